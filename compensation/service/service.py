@@ -3,6 +3,7 @@
 Without any network: `opcua_server` carries it to controls, tests play it by hand.
 """
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -106,6 +107,10 @@ DRIVEN_EVERY = 2.0
 _BESIDE = 1.0  # mm on either side, between which a slope is taken
 
 
+Line = tuple[Point, Point, Point]
+"""Corrections, how each changes with the reading of its own axis, and those readings."""
+
+
 @dataclass(frozen=True)
 class Answer:
     """What a control reads."""
@@ -115,7 +120,9 @@ class Answer:
     # corrections at the readings that were given, mm: those of `sent` once it has settled
     k0: Point
     k1: Point  # how each changes with the reading of its own axis, mm/mm
-    p0: Point  # those readings, mm. Between two answers ``k0 + k1 (p - p0)`` goes on
+    # those readings, mm. Between two answers ``k0 + k1 (p - p0)`` goes on, which nowhere in the
+    # travel is more than the limit
+    p0: Point
     refused: str  # why the last readings were not understood; empty for none
 
 
@@ -140,7 +147,9 @@ class Service:
         self._output = Output(limits or OutputLimits())
         self._quality = Quality.FADING
         zero = (0.0, 0.0, 0.0)
-        self._sequence, self._refused, self._linear = 0, "", (zero, zero, zero)
+        self._sequence, self._refused = 0, ""
+        self._linear: Line = zero, zero, zero
+        self._ends = [errors.chain.link(name).range for name in self.correction.linear_axes]
 
     @property
     def sensors(self) -> tuple[str, ...]:
@@ -215,10 +224,24 @@ class Service:
 
     def tick(self, now: float) -> Answer:
         """What a control reads at this moment."""
-        k0, k1, p0 = self._linear
         sent = self._output.step(now)
         self._quality = sent.quality
+        k0, k1, p0 = self._limited_line(sent)
         return Answer(self._sequence, sent, k0, k1, p0=p0, refused=self._refused)
+
+    def _limited_line(self, sent: Sent) -> Line:
+        """The straight lines within the limit over the whole travel; level while they fade."""
+        k0, k1, p0 = self._linear
+        if sent.quality is Quality.FADING:
+            return sent.values, (0.0, 0.0, 0.0), p0
+        most = self._output.limits.most
+        (x, a), (y, b), (z, c) = (
+            (value, _within(value, slope, at, ends, most))
+            if abs(value) < most
+            else (math.copysign(most, value), 0.0)
+            for value, slope, at, ends in zip(k0, k1, p0, self._ends, strict=True)
+        )
+        return (x, y, z), (a, b, c), p0
 
     def uncertainty(self, readings: Sequence[float]) -> Point:
         """Standard uncertainty of the tool point that the model leaves there, x, y, z, mm.
@@ -247,9 +270,7 @@ class Service:
         q = [v * chain.link(name).unit for v, name in zip(readings, chain.axes, strict=True)]
         return q, None if directions is None else [int(np.sign(d)) for d in directions]
 
-    def _line(
-        self, q: list[float], signs: list[int] | None, wanted: Point
-    ) -> tuple[Point, Point, Point]:
+    def _line(self, q: list[float], signs: list[int] | None, wanted: Point) -> Line:
         """Corrections as a straight line along every linear axis by itself."""
         chain, slopes, at = self.errors.chain, [], []
         for k, name in enumerate(self.correction.linear_axes):
@@ -260,3 +281,15 @@ class Service:
             slopes.append((after - before) / max(ends[1] - ends[0], 1e-9))
             at.append(q[column])
         return wanted, (slopes[0], slopes[1], slopes[2]), (at[0], at[1], at[2])
+
+
+def _within(
+    value: float, slope: float, at: float, ends: tuple[float, float], most: float
+) -> float:
+    """The slope, or the steepest one with which the line stays within the limit up to both ends."""
+    steepest = abs(slope)
+    for way in (end - at for end in ends):
+        room = most - value if slope * way > 0.0 else most + value
+        if abs(slope * way) > room:
+            steepest = min(steepest, room / abs(way))
+    return math.copysign(steepest, slope)

@@ -88,7 +88,8 @@ def test_limits_that_make_no_sense_are_refused(given, said):
         OutputLimits(**given)
 
 
-def test_requests_are_answered_by_the_inverse(service, known, datum, poses, bench_chain):
+def test_requests_are_answered_by_the_inverse(known, datum, poses, bench_chain):
+    service = Service(known, LENGTH, datum, OutputLimits(most=1.0))
     aim = datum.deviation(known)
     columns = [bench_chain.axis_index(a) for a in service.correction.linear_axes]
     for k, q in enumerate(poses[:10]):
@@ -102,6 +103,44 @@ def test_requests_are_answered_by_the_inverse(service, known, datum, poses, benc
         moved = correction(known, known.touches(beside[None], LENGTH), aim)[0, columns]
         line = answer.k0[0] + answer.k1[0] * (beside[columns[0]] - answer.p0[0])
         assert line == pytest.approx(moved[0], abs=30 * NM)
+
+
+@pytest.mark.parametrize("share", [0.3, 1.5, 10.0])
+def test_the_line_between_two_answers_is_limited_over_the_whole_travel(
+    known, datum, poses, bench_chain, share
+):
+    """A control that goes on with K0 and K1 is asked for no more than --most either."""
+    free = Service(known, LENGTH, datum, OutputLimits(most=1.0))
+    wanted = []
+    for k, q in enumerate(poses[:10]):
+        free.move(k + 1, shown(bench_chain, q), now=float(k))
+        wanted.append(free.tick(float(k)))
+    most = share * float(np.abs([answer.k0 for answer in wanted]).max())
+    limited = Service(known, LENGTH, datum, OutputLimits(most=most))
+    ends = np.array([bench_chain.link(a).range for a in limited.correction.linear_axes])
+    cut = 0
+    for k, (q, free_answer) in enumerate(zip(poses[:10], wanted, strict=True)):
+        limited.move(k + 1, shown(bench_chain, q), now=float(k))
+        answer = limited.tick(float(k))
+        k0, k1, p0 = (np.array(v)[:, None] for v in (answer.k0, answer.k1, answer.p0))
+        assert np.abs(k0 + k1 * (ends - p0)).max() <= most * (1.0 + 1e-12)
+        k0, k1 = np.array(free_answer.k0), np.array(free_answer.k1)
+        np.testing.assert_allclose(answer.k0, np.clip(k0, -most, most), atol=1e-15)
+        there = np.abs(k0[:, None] + k1[:, None] * (ends - np.array(free_answer.p0)[:, None]))
+        is_within = (there.max(axis=1) <= most) & (np.abs(k0) < most)
+        np.testing.assert_array_equal(np.array(answer.k1)[is_within], k1[is_within])
+        cut += int((~is_within).sum())
+    assert (cut > 0) == (share < 10.0)
+
+
+def test_the_line_fades_with_the_correction(service, bench_chain, poses):
+    service.move(1, shown(bench_chain, poses[0]), now=0.0)
+    assert any(service.tick(0.0).k0)
+    for now in np.arange(0.05, LIMITS.hold + 1.0, 0.05).tolist():
+        answer = service.tick(now)
+    assert answer.sent.quality is Quality.FADING
+    assert answer.k0 == answer.sent.values == (0.0, 0.0, 0.0)
+    assert answer.k1 == (0.0, 0.0, 0.0)
 
 
 def test_readings_that_are_not_understood_are_no_readings(service, bench_chain, poses):
@@ -217,7 +256,8 @@ def test_no_request_over_opc_ua_is_lost_or_repeated(service, bench_chain, poses)
 
     answers, quality, u = asyncio.run(asyncio.wait_for(both(), 60.0))
     expected = [service.correction.at(poses[n % len(poses)].tolist()) for n in range(1, 41)]
-    np.testing.assert_allclose(answers, expected, atol=1e-12)
+    assert np.abs(expected).max() > LIMITS.most
+    np.testing.assert_allclose(answers, np.clip(expected, -LIMITS.most, LIMITS.most), atol=1e-12)
     assert quality == "held"
     assert u == [0.0, 0.0, 0.0]  # errors that are known without uncertainty
 
