@@ -6,7 +6,7 @@ import numpy as np
 
 from matstd.compensation.part_programs.klartext_words import AXIS, Hole, Modes, Words, defined, way
 from matstd.compensation.part_programs.language import Reading, centre_by_radius, checked_arc
-from matstd.compensation.part_programs.motion import Arc, Corner, Cycle
+from matstd.compensation.part_programs.motion import Arc, ArcFeed, Corner, Cycle
 from matstd.nc.grammar import NUMBER, Block, klartext_blocks, run_order
 from matstd.twin.errors import BadFile
 from matstd.twin.units import DEG
@@ -24,7 +24,8 @@ _INCH = re.compile(r"BEGIN PGM \S+ INCH")
 _ONE_WORD = re.compile(r"\b(F) (MAX|AUTO)\b|\b(LA|MB|DL|DR|S|F|R) (?=[+-]?\d)|\b(MB) (MAX)\b")
 """Words that may be written in two."""
 
-_KEPT_M = {*range(10), 13, 14, 30, 90, 107, 108, 109, 110, 111, 116, 117, 120, 141}
+_KEPT_M = {*range(10), 13, 14, 30, 90, 107, 108, 116, 117, 120, 141}
+_ARC_FEEDS = {feed.value for feed in ArcFeed}
 _OWN_M = {89, 91, 99, 140}
 _EXPECTED = (
     (r"(?!TCH)(?:FN|.*\bQ|.*=)", "numbers, and parameters Q that the program sets itself"),
@@ -137,6 +138,8 @@ class _Reader:
                 self.reading.switch(word == "128", self.reading.length)
             elif int(word) in (126, 127):
                 self.is_shorter_way = word == "126"
+            elif int(word) in _ARC_FEEDS:
+                self.reading.arc_feed = ArcFeed(int(word))
             elif int(word) not in {*_OWN_M, *_KEPT_M, *self.reading.passed}:
                 expected = "M0 to M9, M13, M14, M30, M89 to M91, M99, M107 to M111, M116, M117, "
                 expected += "M120, M126 to M129, M140, M141; "

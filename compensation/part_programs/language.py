@@ -10,6 +10,7 @@ import numpy as np
 from matstd.compensation.part_programs.frame import Frame
 from matstd.compensation.part_programs.motion import (
     Arc,
+    ArcFeed,
     Corner,
     Cycle,
     Item,
@@ -45,6 +46,7 @@ class Reading:
     length: float = field(init=False)
     feed: float = 0.0  # number of the F word in force; degrees/min where axes turn alone
     feed_unit: float = 1.0  # one of it where linear axes move, mm/min
+    arc_feed: ArcFeed = ArcFeed.CENTRE
     tcpm: bool = False
     unit: float = 1.0
     tool: int | str | None = None  # number, or name, of that in the spindle
@@ -163,6 +165,7 @@ class Reading:
             turned=tuple(a for a in named if a not in LENGTHS),
             arc=arc,
             beside=beside,
+            arc_feed=self.arc_feed,
             minutes=minutes,
             cycle=cycle,
         )

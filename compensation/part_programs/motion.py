@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from enum import Enum
 from functools import cache
 from typing import NamedTuple
 
@@ -52,6 +53,14 @@ class Cycle(NamedTuple):
     ahead: int  # motions from here to the second of the three
 
 
+class ArcFeed(Enum):
+    """What the feed of an arc beside a contour is the speed of."""
+
+    CENTRE = 111  # of the tool's centre
+    EDGE = 109  # of the cutting edge on the contour
+    INNER_EDGE = 110  # of the edge where the centre goes on the smaller radius, else of the centre
+
+
 class Motion(NamedTuple):
     """A block that moves axes, from where the one before has ended."""
 
@@ -73,6 +82,7 @@ class Motion(NamedTuple):
     # way by which the tool's centre goes to the left of the path that is programmed, mm; to the
     # right below zero. Zero once it is resolved
     beside: float = 0.0
+    arc_feed: ArcFeed = ArcFeed.CENTRE
     # time that it takes where the program states that instead of a feed; else 0
     minutes: float = 0.0
     cycle: Cycle | None = None  # None where the program itself says how the axes move

@@ -12,7 +12,14 @@ from itertools import groupby
 import numpy as np
 
 from matstd.compensation.part_programs.language import Reading
-from matstd.compensation.part_programs.motion import Arc, Item, Keep, Motion, angle_between
+from matstd.compensation.part_programs.motion import (
+    Arc,
+    ArcFeed,
+    Item,
+    Keep,
+    Motion,
+    angle_between,
+)
 from matstd.twin.frames import Array
 
 MAX_SMOOTH_SINE = 1e-4
@@ -67,11 +74,32 @@ class Element:
         return abs(angle)
 
     @property
+    def own_radius(self) -> float:
+        """Radius of the arc of the contour, mm."""
+        assert self.arc is not None
+        return float(np.linalg.norm(self.start - self.arc.centre))
+
+    @property
     def radius(self) -> float:
         """Radius of the shifted arc, mm; zero or less where the tool does not fit."""
         assert self.arc is not None
-        own = float(np.linalg.norm(self.start - self.arc.centre))
-        return own - self.d * float(np.sign(self.arc.angle))
+        return self.own_radius - self.d * float(np.sign(self.arc.angle))
+
+    @property
+    def feed_share(self) -> float:
+        """Feed of the tool's centre on the shifted arc over the feed that the program states.
+
+        With M109 the feed is that of the cutting edge: the control goes round by the same angle in
+        the same time. It does so on arcs alone, and the shifted arc is written as lines.
+
+        Reference:
+            iTNC 530, User's Manual ISO programming (340 49x-02), 7.4 "Feed rate for circular arcs:
+            M109/M110/M111".
+        """
+        share = self.radius / self.own_radius
+        kind = self.motion.arc_feed
+        is_of_edge = kind is ArcFeed.EDGE or (kind is ArcFeed.INNER_EDGE and share < 1.0)
+        return share if is_of_edge else 1.0
 
 
 def _left(v: Array) -> Array:
@@ -249,7 +277,12 @@ class _Contour:
         angle += (1.0 if positive else -1.0) * 2.0 * np.pi * (turns - 1)
         if abs(angle) > whole + MAX_OVERSHOOT / element.radius:
             self._refuse(element.motion.line)
-        return moved._replace(arc=Arc(element.arc.plane, element.arc.centre, angle))
+        share = element.feed_share
+        return moved._replace(
+            arc=Arc(element.arc.plane, element.arc.centre, angle),
+            feed=share * moved.feed,
+            word=share * moved.word,
+        )
 
     def _round(self, after: Element, start: Array, end: Array) -> Motion:
         """The arc round an outer corner, at the height at which the next element begins."""

@@ -283,9 +283,7 @@ class Service:
         return wanted, (slopes[0], slopes[1], slopes[2]), (at[0], at[1], at[2])
 
 
-def _within(
-    value: float, slope: float, at: float, ends: tuple[float, float], most: float
-) -> float:
+def _within(value: float, slope: float, at: float, ends: tuple[float, float], most: float) -> float:
     """The slope, or the steepest one with which the line stays within the limit up to both ends."""
     steepest = abs(slope)
     for way in (end - at for end in ends):

@@ -1,5 +1,6 @@
 """Labels, parameters and cutter radius: against LinuxCNC, distances, and values worked by hand."""
 
+import re
 from itertools import pairwise
 
 import numpy as np
@@ -11,6 +12,7 @@ from matstd.compensation.field.inverse import datum_of
 from matstd.compensation.part_programs.frame import Frame
 from matstd.compensation.part_programs.motion import Motion, Paths
 from matstd.compensation.part_programs.program import read_part_program
+from matstd.compensation.programs.compensation import compensated
 from matstd.twin.errors import BadFile
 
 R = 5.0
@@ -165,6 +167,31 @@ def test_the_centre_is_a_radius_away_from_the_contour(frame, tmp_path, side):
     left = 1.0 if side == "RL" else -1.0
     np.testing.assert_allclose(found[2].end[k], [40.0, 10.0 + left * R], atol=1e-9)
     np.testing.assert_allclose(found[-1].start[k], [40.0, 10.0 + left * R], atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("word", "outer", "inner"), [("M109", 1, 1), ("M110", 0, 1), ("M111", 0, 0)]
+)
+def test_the_edge_keeps_its_feed_on_arcs_with_m109(
+    known, frame, head, tmp_path, word, outer, inner
+):
+    """A quarter of R 20 outside and of R 30 inside: the edge goes (R +- r) / R times as fast."""
+    text = START + (
+        f"L X+0 Y+0 RL F600 {word}\nL X+0 Y+40\nCC X+20 Y+40\nC X+20 Y+60 DR-\nL X+40\n"
+        "CC X+40 Y+90\nC X+70 Y+90 DR+\nL Y+110\nM111\nCC X+90 Y+110\nC X+90 Y+130 DR-\n"
+        "L X+110\nL X+150 Y+150 R0\nEND PGM A MM\n"
+    )
+    found = program(text, frame, tmp_path)
+    outside, inside, later = (m for m in found.motions if m.arc is not None)
+    paths = Paths([outside, inside], frame.linear)
+    at_edge = np.array([20.0, 30.0]) * 0.5 * np.pi / paths.far * [outside.feed, inside.feed]
+    around = np.array([20.0 / (20.0 + R), 30.0 / (30.0 - R)])
+    np.testing.assert_allclose(at_edge, 600.0 * np.where([outer, inner], 1.0, around), rtol=1e-9)
+    straight = [m.word for m in found.motions[2:] if m.arc is None]
+    assert [*straight, later.word] == [600.0] * (len(straight) + 1)
+    text = compensated(found, known, head).text
+    feeds = {float(feed) for feed in re.findall(r"^\d+ L .* F(\d[\d.]*)", text, re.M)}
+    assert feeds == {500.0, 600.0, float(f"{outside.word:.6g}"), float(f"{inside.word:.6g}")}
 
 
 def test_height_and_words_stay_with_their_motion(frame, tmp_path):
