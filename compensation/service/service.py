@@ -13,7 +13,7 @@ from matstd.compensation.field import Datum, MachineErrors, relative_columns
 from matstd.compensation.service.output import Output, OutputLimits, Quality, Sent
 from matstd.compensation.service.point_correction import Point, PointCorrection
 from matstd.compensation.service.tabulated import History
-from matstd.diagnosis.drift import DriftLaw, LiveDrift
+from matstd.diagnosis.drift import LiveDrift
 from matstd.twin.errors import DesignError, OutsideTravel
 from matstd.twin.frames import Array
 from matstd.twin.record import Touches
@@ -30,8 +30,8 @@ class Drifts:
         """The laws where the preset is taken."""
         self._errors = errors
         self._at_datum = errors.touches(datum.q[None, :], datum.length)
-        laws = [e for e in errors.effects if isinstance(e, DriftLaw) and e.has_unknowns]
-        self._laws = [LiveDrift(law, self._at_datum) for law in laws]
+        self._laws = LiveDrift.of(errors.effects, self._at_datum)
+        laws = [live.law for live in self._laws]
         is_law = [effect in laws for effect in errors.effects]
         counts = [len(theta) for theta in errors.theta]
         self.others = np.flatnonzero(~np.repeat(np.array(is_law, dtype=bool), counts))

@@ -1,6 +1,6 @@
 """A saved law in operation: what it misses, learnt from probings, and how well it is known."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 
@@ -8,6 +8,7 @@ from matstd.diagnosis.drift.drift_law import DriftLaw, Replay
 from matstd.diagnosis.drift.probing import Unknowns
 from matstd.twin.errors import DesignError
 from matstd.twin.frames import Array
+from matstd.twin.model import Effect
 from matstd.twin.record import Touches
 
 
@@ -29,6 +30,12 @@ class LiveDrift:
         unit = np.eye(self._begin.rows.shape[1])
         memory = law.saved.law.memory
         self._unknowns = [Unknowns(float(law.spread[k] ** 2), unit, memory, True) for k in self._at]
+
+    @classmethod
+    def of(cls, effects: Iterable[Effect], begin: Touches) -> list["LiveDrift"]:
+        """Those laws among the effects of a machine that have unknowns."""
+        laws = [e for e in effects if isinstance(e, DriftLaw) and e.has_unknowns]
+        return [cls(law, begin) for law in laws]
 
     @property
     def _at(self) -> tuple[int, ...]:

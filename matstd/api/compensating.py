@@ -33,7 +33,6 @@ from matstd.compensation.tables import (
     write_table_results,
     write_tables,
 )
-from matstd.diagnosis.drift import DriftLaw
 from matstd.diagnosis.files import SavedModel
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.remarks import Remark, short_beam
@@ -54,6 +53,7 @@ from matstd.twin.files import (
 )
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain
+from matstd.twin.model import is_saved
 from matstd.twin.record import Touches
 
 SOMETIMES = (
@@ -315,7 +315,7 @@ def compensate(
         raise DesignError(f"{name}: no error of an axis is known and switched on")
     chain = known.chain
     beams = tuple(short_beam(*found) for found in short_beams(chain, known.effects))
-    laws = [Path(e.path).read_bytes() for e in known.effects if isinstance(e, DriftLaw)]
+    laws = [Path(e.path).read_bytes() for e in known.effects if is_saved(e)]
     title = model.title if isinstance(model, Diagnosis) else Path(name).name
     out = Compensation(
         errors=known,

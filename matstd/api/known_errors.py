@@ -8,13 +8,13 @@ import numpy as np
 
 from matstd.api.diagnosing import Diagnosis
 from matstd.compensation.field import MachineErrors, State
-from matstd.diagnosis.drift import DriftLaw
 from matstd.diagnosis.files import SavedModel, model_of, read_model
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.remarks import Remark
 from matstd.twin.errors import BadArgument, DesignError, UnknownEffect
 from matstd.twin.files import kind_of, read_errors, read_machine, read_text
 from matstd.twin.library import parse_effect, parse_sized_effect
+from matstd.twin.model import is_saved
 
 
 def machine_errors(
@@ -57,7 +57,7 @@ def with_added(errors: MachineErrors, text: str) -> MachineErrors:
     """With an effect that is added: of the size that is stated, or a saved law as it was saved."""
     if "=" not in text:
         effect = parse_effect(text, errors.chain)
-        if isinstance(effect, DriftLaw):
+        if is_saved(effect):
             return errors.with_known([(effect, np.ones(1))])
     added = parse_sized_effect(text, errors.chain)
     return errors.with_known([(added.effect, added.theta)])
@@ -66,8 +66,8 @@ def with_added(errors: MachineErrors, text: str) -> MachineErrors:
 def with_unknowns(errors: MachineErrors) -> MachineErrors:
     """Saved laws with what is not known of them; raises UnknownEffect where a drive is missing."""
     for number, effect in enumerate(errors.effects):
-        if isinstance(effect, DriftLaw):
-            effect.replay(errors.touches(np.zeros((1, len(errors.chain.axes))), 0.0))
+        if is_saved(effect):
+            effect.terms(errors.touches(np.zeros((1, len(errors.chain.axes))), 0.0))
             theta, root = effect.whole.known
             errors = errors.widened(number, effect.whole, theta[1:], root[1:, 1:])
     return errors

@@ -128,6 +128,34 @@ class Tunable(Effect, Protocol):
         ...
 
 
+class Saved(Effect, Protocol):
+    """An effect whose law was learnt before and saved, with what is not known of it.
+
+    Attributes:
+        path: File of the law, as it was written.
+        has_unknowns: Whether what is not known of the law are parameters too.
+        whole: The same with its unknowns.
+        known: Parameters of the law as it was saved, (P,), and the root of their covariance.
+    """
+
+    @property
+    def path(self) -> str: ...  # noqa: D102
+
+    @property
+    def has_unknowns(self) -> bool: ...  # noqa: D102
+
+    @property
+    def whole(self) -> "Saved": ...  # noqa: D102
+
+    @property
+    def known(self) -> tuple[Array, Array]: ...  # noqa: D102
+
+
+def is_saved(effect: Effect) -> TypeGuard[Saved]:
+    """Whether an effect replays a law with its uncertainty."""
+    return hasattr(type(effect), "has_unknowns")
+
+
 def is_tunable(effect: Effect) -> TypeGuard[Tunable]:
     """Whether an effect has inner parameters.
 
