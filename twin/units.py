@@ -1,6 +1,7 @@
 """The only conversion factors in the house: a name without suffix is in mm, rad, s, degC or N."""
 
 import math
+from collections.abc import Sequence
 
 UM = 1e-3
 """One micrometre in mm."""
@@ -20,6 +21,25 @@ WHOLE_DEGREES, ROUNDING = 5.0, 0.1
 within the second, degrees, or within half of their last decimal."""
 MIN_DECIMALS = 2
 """Decimals of an angle in radians: with one, 5.7 degrees apart, anything may be meant."""
+OTHERS = {
+    "mm": (("metres", 1e3), ("µm", 1e-3)),
+    "µm": (("mm", 1e3), ("nm", 1e-3)),
+    "µrad": (("mrad", 1e3), ("nrad", 1e-3)),
+    "degrees": (("radians", 1.0 / DEG),),
+    "mm/min": (("m/min", 1e3),),
+    "kg": (("t", 1e3), ("g", 1e-3)),
+    "MPa": (("GPa", 1e3), ("Pa", 1e-6)),
+}
+"""Units in which a number may have been typed instead of its own, and what one of them is."""
+NEAR = 4.0
+"""Times by which numbers differ at most from what is usual, in the unit in which they were typed.
+As they stand they then differ by 14 times or more."""
+WHOLE_MM, LEAST_MM, MOST_METRES = 5.0, 20.0, 1.0
+"""A place in metres: all coordinates are whole multiples of the first in mm, the largest no smaller
+than the second, and below the third. A place that was measured in mm is no such thing."""
+WHOLE_TURN, LEAST_TURN, TURN_DECIMALS = 15.0, 30.0, 3
+"""Rotations in radians: whole multiples of the first, degrees, none between zero and the second,
+typed with so many decimals. Rotations that were measured are no such thing."""
 FULL_TURN = 2.0 * math.pi + 0.01  # ends beyond are no angles in radians of one turn
 
 
@@ -38,3 +58,52 @@ def meant_in_radians(low: float, high: float) -> tuple[float, float] | None:
     meant = tuple(WHOLE_DEGREES * round(end / WHOLE_DEGREES) for end in ends)
     is_whole = all(abs(e - m) <= allowed for e, m in zip(ends, meant, strict=True))
     return (meant[0], meant[1]) if is_whole else None
+
+
+def in_another_unit(
+    values: Sequence[float], unit: str, usual: float | None
+) -> tuple[str, float] | None:
+    """The unit in which numbers were probably typed, and what one of it is in their own.
+
+    Args:
+        values: One number, or several of one kind such as sides, a place, rotations.
+        unit: Of the numbers, as `OTHERS` has it.
+        usual: Size of the largest that is usual, in this unit; None where any is.
+
+    Returns:
+        None where the numbers fit their own unit.
+
+    Example:
+        >>> in_another_unit([0.785], "degrees", 45.0), in_another_unit([0.012], "mm", None)
+        (('radians', 57.29577951308232), None)
+        >>> in_another_unit([0.05, 0.02, 0.0], "mm", None)
+        ('metres', 1000.0)
+    """
+    largest = max(map(abs, values))
+    if usual is not None:
+        near = (o for o in OTHERS.get(unit, ()) if 1.0 / NEAR < o[1] * largest / usual < NEAR)
+        return next(near, None) if largest else None
+    is_whole = {"mm": _are_metres, "degrees": _are_radians}.get(unit)
+    return OTHERS[unit][0] if largest and is_whole and is_whole(values) else None
+
+
+def _are_metres(values: Sequence[float]) -> bool:
+    """Whether three coordinates are whole in mm if they are metres."""
+    mm = [1e3 * v for v in values]
+    is_whole = all(_is_multiple(v, WHOLE_MM, 1e-6) for v in mm)
+    largest = max(map(abs, mm))
+    return len(mm) == 3 and is_whole and LEAST_MM <= largest < 1e3 * MOST_METRES
+
+
+def _are_radians(values: Sequence[float]) -> bool:
+    """Whether angles are whole in degrees if they are radians."""
+    turned = [v for v in values if v]
+    decimals = min(len(f"{v:.6f}".rstrip("0").partition(".")[2]) for v in turned)
+    allowed = 0.5 * 10.0**-decimals / DEG
+    is_whole = all(_is_multiple(v / DEG, WHOLE_TURN, allowed) for v in turned)
+    is_large = min(map(abs, turned)) / DEG > LEAST_TURN - allowed
+    return decimals >= TURN_DECIMALS and is_whole and is_large
+
+
+def _is_multiple(value: float, of: float, allowed: float) -> bool:
+    return abs(value - of * round(value / of)) <= allowed

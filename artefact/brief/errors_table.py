@@ -1,5 +1,6 @@
 """`[errors]` of a project file: expected sizes, shapes and correlations of errors."""
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -17,8 +18,11 @@ from matstd.sensitivity.population import (
 )
 from matstd.twin.errors import BadFile, BadValue, DesignError, UnknownSymbol
 from matstd.twin.files import Pair, Table
-from matstd.twin.machine import DEFAULT_RANGES, Chain, Ranges, ShapeName
-from matstd.twin.units import UM, URAD
+from matstd.twin.machine import DEFAULT_RANGES, Chain, Ranges, ShapeName, error_class
+from matstd.twin.units import UM, URAD, in_another_unit
+
+LARGEST = 1e5
+"""Largest amplitude, µm or µrad: a tenth of a radian, beyond which first order says little."""
 
 
 class MixTable(Table):
@@ -115,7 +119,24 @@ def _known(name: str, chain: Chain, path: Path, key: str) -> Any:
 def _amplitudes(pair: Pair, unit: float, path: Path, key: str) -> tuple[float, float]:
     if not 0.0 <= pair[0] <= pair[1]:
         raise BadFile(path, key, list(pair), "amplitudes from zero up, the smaller first")
+    if pair[1] > LARGEST:
+        raise BadFile(path, key, list(pair), f"{LARGEST:g} at most, in µm or µrad")
     return pair[0] * unit, pair[1] * unit
+
+
+def amplitude_slips(errors: Population, path: Path) -> Iterator[BadFile]:
+    """Stated amplitudes that look typed in another unit; a very good machine may have them."""
+    for symbol in errors.chain.symbols:
+        key, stated = f"errors.parameters.{symbol.name}", errors.ranges.by_name.get(symbol.name)
+        name = error_class(errors.chain, symbol)
+        if stated is None:
+            key, stated = f"errors.classes.{name}", errors.ranges.by_class[name]
+        unit, word = (URAD, "µrad") if symbol.is_angular else (UM, "µm")
+        pair = [end / unit for end in stated]
+        other = in_another_unit(pair, word, DEFAULT_RANGES[name][1] / unit)
+        if other is not None:
+            meant = [round(other[1] * end, 6) for end in pair]
+            yield BadFile(path, key, pair, f"{word}; is it in {other[0]}, {meant} {word}?")
 
 
 def _distributions(table: ErrorsTable, chain: Chain, path: Path) -> Distributions:

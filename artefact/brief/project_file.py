@@ -17,7 +17,7 @@ from matstd.artefact.brief.contradictions import (
     standard_faults,
     table_key,
 )
-from matstd.artefact.brief.errors_table import ErrorsTable, expected_errors
+from matstd.artefact.brief.errors_table import ErrorsTable, amplitude_slips, expected_errors
 from matstd.artefact.brief.material_table import MaterialTable
 from matstd.artefact.brief.standard_tables import (
     BlankTable,
@@ -46,6 +46,7 @@ from matstd.twin.files import (
     checked,
     read_machine,
     read_toml,
+    refuse_unit_slips,
 )
 from matstd.twin.machine import Chain
 from matstd.twin.record import Setup
@@ -69,7 +70,7 @@ class MonteCarloTable(Table):
     digits: int = Field(default=0, ge=0, le=3)
     """draw until so many digits of the standard deviation are stable at every pose (JCGM 101,
     7.9.4); 0 for exactly `draws`"""
-    tolerance_um: float = Field(default=float("inf"), gt=0.0)
+    tolerance_um: float = Field(default=float("inf"), gt=0.0, examples=[100.0])
     """permissible volumetric error; the share of machines beyond it is reported at every pose"""
 
 
@@ -178,7 +179,9 @@ def read_project(path: str | Path, montecarlo: Mapping[str, float] | None = None
         data["montecarlo"] |= montecarlo
     remarks = [f"{path}: {old} is now called {new} and was read as such" for new, old in renamed]
     try:
-        return _resolved(checked(ProjectTable, data, path), path, tuple(remarks))
+        table = checked(ProjectTable, data, path)
+        refuse_unit_slips(table, path)  # what contradicts a slip contradicts what nobody meant
+        return _resolved(table, path, tuple(remarks))
     except BadFile as error:
         raise as_written(error, dict(renamed)) from error
 
@@ -242,7 +245,7 @@ def _resolved(table: ProjectTable, path: Path, remarks: tuple[str, ...]) -> Brie
         date=wanted.date,
         path=path,
         machine_path=machine_path,
-        remarks=remarks,
+        remarks=(*remarks, *dict.fromkeys(map(str, amplitude_slips(errors, path)))),
     )
 
 

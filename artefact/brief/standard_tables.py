@@ -167,14 +167,14 @@ class LimitsTable(Table):
     """largest mass of the standard"""
     table_radius_mm: float = Field(default=160.0, gt=0.0)
     """radius of the table's face; not together with `[workshop.table]`"""
-    slot_pitch_mm: float = Field(default=0.0, ge=0.0)
+    slot_pitch_mm: float = Field(default=0.0, ge=0.0, examples=[63.0])
     """distance between the slots of the table, which run along its x, one through the middle, 20
     or more; 0 if screws may be anywhere"""
     overhang_mm: float | None = Field(default=None, ge=0.0, examples=[40.0])
     """largest overhang of the base beyond the edge of the table. Default: 40, or 5 more than the
     overhang at the middle of the table if that is larger. Screws and their pads are on the table
     in every set-up, whatever overhangs"""
-    riser_mm: float = Field(default=0.0, ge=0.0)
+    riser_mm: float = Field(default=0.0, ge=0.0, examples=[80.0])
     """largest height of the seat above the table's face, on a riser or pallet. A body of
     `[[workshop.bodies]]` whose upper face is at the seat carries it without this key"""
     first_mode_Hz: float = Field(default=0.0, ge=0.0, le=10_000.0)  # noqa: N815

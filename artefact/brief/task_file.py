@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import Field
 
 from matstd.twin.errors import BadFile
-from matstd.twin.files import Table, checked, read_toml
+from matstd.twin.files import Table, checked, read_toml, refuse_unit_slips
 from matstd.twin.units import DEG, UM
 
 Range = Annotated[list[float], Field(min_length=2, max_length=2)]
@@ -75,6 +75,7 @@ def read_task(path: str | Path) -> Task:
         BadFile: Unreadable, no TOML, another format, a key unknown or out of range.
     """
     file = checked(TaskTable, read_toml(path, "task/1"), path)
+    refuse_unit_slips(file, path)
     ranges = {"slope_deg": file.slope_deg, "curvature_1_m": file.curvature_1_m}
     for key, (low, high) in (ranges | {f"poses.{k}": v for k, v in file.poses.items()}).items():
         if low > high or (low < 0.0 and not key.startswith("poses")):

@@ -20,12 +20,13 @@ from matstd.twin.files.toml import (
     read_text,
     read_toml,
 )
+from matstd.twin.files.unit_slips import refuse_unit_slips
 from matstd.twin.files.whole import refuse_to_overwrite, write_whole, written_whole
 
 __all__ = [
     "CsvTable", "MachineTables", "Pair", "SensorRecord", "SetupTable", "Table", "Vector",
     "checked", "errors_toml", "kind_of", "parse_kind", "read_any_text",
     "read_errors", "read_machine", "read_poses", "read_run", "read_sensors", "read_text",
-    "read_toml", "reading_columns", "refuse_to_overwrite", "results_folder", "write_run",
-    "write_whole", "written_whole",
+    "read_toml", "reading_columns", "refuse_to_overwrite", "refuse_unit_slips", "results_folder",
+    "write_run", "write_whole", "written_whole",
 ]  # fmt: skip

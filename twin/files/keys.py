@@ -48,8 +48,11 @@ UNITS = {
     "_degC": "°C",
     "_u_K": "K",
     "_s": "s",
+    "pitch": "mm",
+    "expected": "mm",
 }
-"""Units by the end of a key; the longer ends stand before those that they contain."""
+"""Units by the end of a key; the longer ends stand before those that they contain. Lengths of
+machine files have none in their names."""
 
 LONG = 90  # characters of a clause from which on what stands in brackets is left out of a refusal
 T = TypeVar("T", bound=BaseModel)
@@ -101,8 +104,8 @@ def keys_of(model: type[BaseModel]) -> dict[str, Key]:
     out = {}
     for name, field in model.model_fields.items():
         key = field.alias or name
-        holds = _holds(field.annotation, field.metadata, _unit(key)).one
-        bounds = _bounds(field.metadata, _unit(key))
+        holds = _holds(field.annotation, field.metadata, unit_of(key)).one
+        bounds = _bounds(field.metadata, unit_of(key))
         out[key] = Key(about.get(name, ""), holds, bounds, _example(field))
     return out
 
@@ -125,7 +128,7 @@ def _docstrings(model: type[BaseModel]) -> dict[str, str]:
     return {name: " ".join(text.split()) for name, text in out.items()}
 
 
-def _unit(key: str) -> str:
+def unit_of(key: str) -> str:
     """Unit that the name of a key states, "" for none."""
     return next((unit for end, unit in UNITS.items() if key.endswith(end)), "")
 

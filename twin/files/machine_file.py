@@ -11,6 +11,7 @@ from pydantic import Field, Strict
 from matstd.twin.errors import BadFile, BadValue, UnknownAxis
 from matstd.twin.files.keys import Table, checked
 from matstd.twin.files.toml import is_file, read_toml
+from matstd.twin.files.unit_slips import refuse_unit_slips
 from matstd.twin.frames import Array
 from matstd.twin.machine import Axis, Chain, Link, make_chain
 from matstd.twin.units import DEG, meant_in_radians
@@ -28,6 +29,9 @@ NEAREST_PIVOT, FARTHEST_PIVOT = 0.05, 5.0
 """A coordinate of a pivot between these, mm, may be one in metres: 0.42 for 420 mm. Measured
 centres of rotation differ from zero by hundredths of a millimetre."""
 LONGEST_IN_METRES = 5e3  # in mm: no pivot lies farther
+MOST_BELOW = 0.5
+"""Share of the travel of the gauge point that may lie below the table's face."""
+LEAST_AWAY = 50.0  # of a table from the line about which it turns, before that is strange, mm
 NEARER = 4.0
 """Times that a pivot in metres is nearer to the table, or farther from the spindle, once read so;
 only then is it one."""
@@ -39,6 +43,7 @@ def machine_slips(chain: Chain) -> Iterator[BadValue]:
         if link.kind != "fixed" and link.programmed:
             yield from _travel(chain, link)
     if len(chain.linear_axes) == 3:  # an arm states its joints one by one
+        yield from _table(chain)
         for link in chain.links:
             if link.kind == "rotary" and link.programmed:
                 yield from _letter(link)
@@ -100,6 +105,22 @@ def _pivot(chain: Chain, link: Link) -> Iterator[BadValue]:
         yield BadValue(key, _list(link.point), f"{expected}; is it in metres, {mm}?")
 
 
+def _table(chain: Chain) -> Iterator[BadValue]:
+    """A table in metres: most travel of the gauge point lies below, or its line is far away."""
+    origin, mm = chain.table_origin, 1e3 * chain.table_origin
+    if not NEAREST_PIVOT < np.abs(origin).max() < FARTHEST_PIVOT:
+        return
+    low, high = _travels(chain)
+    below = [(o[2] - low[2]) / max(high[2] - low[2], SHORTEST_TRAVEL) for o in (origin, mm)]
+    is_above = below[0] > MOST_BELOW > below[1]
+    lines = [link for link in chain.links if link.kind == "rotary" and link.carries_workpiece]
+    away = [[np.linalg.norm(_across(o - k.point, k)) for o in (origin, mm)] for k in lines]
+    is_far = any(stated > NEARER * meant and stated > LEAST_AWAY for stated, meant in away)
+    if is_above or is_far:
+        expected = f"mm, the centre of the table's face; is it in metres, {_list(mm)}?"
+        yield BadValue("workpiece.origin", _list(origin), expected)
+
+
 def _across(point: Array, link: Link) -> Array:
     """A point without its part along the line of an axis, (3,), mm."""
     along = link.direction / np.linalg.norm(link.direction)
@@ -108,8 +129,13 @@ def _across(point: Array, link: Link) -> Array:
 
 def _box(chain: Chain) -> tuple[Array, Array]:
     """Smallest and largest coordinates of all that the tool reaches and of the table, mm."""
-    low = np.minimum(0.0, chain.table_origin)
-    high = np.maximum(0.0, chain.table_origin)
+    low, high = _travels(chain)
+    return np.minimum(low, chain.table_origin), np.maximum(high, chain.table_origin)
+
+
+def _travels(chain: Chain) -> tuple[Array, Array]:
+    """Smallest and largest coordinates of the gauge point, rotary axes at zero, mm."""
+    low, high = np.zeros(3), np.zeros(3)
     for name in chain.linear_axes:
         link = chain.link(name)
         ends = np.outer(link.range, link.direction)
@@ -226,6 +252,7 @@ def read_machine(path: str | Path, named_in: str | Path | None = None) -> Chain:
             expected = "the path of a machine file, relative to this file"
             raise BadFile(named_in, "machine", found, expected)
     tables = checked(MachineFile, read_toml(path, "machine/1"), path)
+    refuse_unit_slips(tables, path)
     chain = tables.made(path)
     slips = [BadFile.of(path, slip) for slip in machine_slips(chain)]
     if slips:
