@@ -10,6 +10,7 @@ is reported, put into the model, and the next is looked for.
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -122,7 +123,8 @@ def _explained(space: ResidualSpace, fit: Fit, cured: Fit) -> Array:
     return space.project(part)[:, 0] * (fit.noise.factor / cured.noise.factor)
 
 
-class _Constant(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class _Constant:
     """One carrier, off by a constant in a region.
 
     Attributes:
@@ -136,13 +138,10 @@ class _Constant(NamedTuple):
 
     def gains(self, rows: BoolArray, variable: Bounded) -> Array:
         """As of `Measure`."""
-        space, labels = self.space, np.arange(variable.size)
-        C = _white(space, (rows * self.column)[:, None] * (variable.bins[:, None] == labels))
-        U = space.Q[: len(C)].T @ C
-        whole = C.T @ C
-        along = C.T @ (space.residual if self.drawing is None else self.drawing)[: len(C)]
+        space = self.space
+        beside, whole, along = self._sums(rows, variable)
         # sums over the square of bins i to k, from a table of sums
-        own = square_sums(whole - U.T @ U)
+        own = square_sums(whole - beside @ beside.T)
         enough = summed(np.bincount(variable.bins[space.used & rows], minlength=variable.size))
         sound = (
             (enough >= MIN_TOUCHES_OF_REGION)
@@ -152,6 +151,38 @@ class _Constant(NamedTuple):
         sound &= variable.is_offered
         drop = np.where(sound, summed(along) ** 2 / np.where(sound, own, 1.0), 0.0)
         return _gain(space, drop) if self.drawing is None else 0.5 * drop
+
+    def _sums(self, rows: BoolArray, variable: Bounded) -> tuple[Array, Array, Array]:
+        """Products of the column in each bin with the model (B, P), with itself, with the drawing.
+
+        In white noise a touch counts in its own bin alone: sums of rows, and no product of matrices
+        with a column a bin, which is most of the time of a search.
+        """
+        space, size = self.space, variable.size
+        if space.whitener is not None:
+            bins = variable.bins[:, None] == np.arange(size)
+            C = _white(space, (rows * self.column)[:, None] * bins)
+            return C.T @ space.Q[: len(C)], C.T @ C, C.T @ self._drawn[: len(C)]
+        inside = np.flatnonzero(rows[space.used])
+        bins = variable.bins[space.used][inside]
+        order = np.argsort(bins, kind="stable")
+        inside, bins = inside[order], bins[order]
+        first = np.flatnonzero(np.diff(bins, prepend=-1))
+        sums = np.zeros((size, self._products.shape[1]))
+        if len(first):
+            sums[bins[first]] = np.add.reduceat(self._products[inside], first, axis=0)
+        return sums[:, 2:], np.diag(sums[:, 0]), sums[:, 1]
+
+    @property
+    def _drawn(self) -> Array:
+        return self.space.residual if self.drawing is None else self.drawing
+
+    @cached_property
+    def _products(self) -> Array:
+        """Of the column in white noise with itself, the drawing and the model, (n, 2 + P)."""
+        c = _white(self.space, self.column[:, None])
+        n = len(c)
+        return c * np.column_stack([c, self._drawn[:n], self.space.Q[:n]])
 
 
 def _white(space: ResidualSpace, columns: Array) -> Array:
