@@ -13,7 +13,8 @@ from pathlib import Path
 import numpy as np
 
 from matstd.artefact.brief import Brief, project_text, read_project
-from matstd.artefact.feasibility import check_seat, feasibility, stands
+from matstd.artefact.feasibility import Feasibility, check_seat, feasibility, stands
+from matstd.twin.compute import Progress, silent
 from matstd.twin.errors import BadFile, DesignError, NotBuildable, NotReachable
 from matstd.twin.files import read_machine
 from matstd.twin.frames import Array, fixed_xyz
@@ -48,7 +49,7 @@ UPRIGHT, ON_ITS_SIDE = (0.0, 0.0, 0.0), (-90.0, 0.0, 0.0)
 
 STEP_OF_PLACE, MOST_PLACES = 10.0, 3
 """Between two places of a second set-up, mm, and how many are tried with the reach of the machine
-(1.5 s of processor each)."""
+(half a second of processor each)."""
 
 _GRID = 200  # points a side by which areas are counted: to 1 %
 
@@ -84,7 +85,12 @@ class Proposal:
         return float((on & under).sum() / on.sum())
 
 
-def propose(machine: Path, named: str, table: tuple[float, ...] | None = None) -> Proposal:
+def propose(
+    machine: Path,
+    named: str,
+    table: tuple[float, ...] | None = None,
+    progress: Progress = silent,
+) -> Proposal:
     """The largest standard up to the usual one that a machine can be probed on.
 
     Args:
@@ -105,16 +111,19 @@ def propose(machine: Path, named: str, table: tuple[float, ...] | None = None) -
         )
     # from the usual size down; the first refusal is reported, since it binds what is wanted most
     first: DesignError | None = None
-    for base, length, turn in product(_bases(size, USUAL), LENGTHS, _turns(chain)):
+    trials = list(product(_bases(size, USUAL), LENGTHS, _turns(chain)))
+    for i, (base, length, turn) in enumerate(trials):
+        progress(f"seat, reach and room of a base of {base:g} mm", i, len(trials))
         made = _tables(chain, base, length, turn, size, machine)
         try:
             brief = _checked(made, machine)
         except (NotReachable, NotBuildable, BadFile) as error:
             first = first or error
             continue
+        progress("what a larger base or another place covers", i, len(trials))
         larger = [side for side in _bases(size, LARGEST) if side > max(base, USUAL)]
         tried = (_tables(chain, side, length, turn, size, machine) for side in larger)
-        fits = (side for side, t in zip(larger, tried, strict=True) if _passes(t, machine))
+        fits = (side for side, t in zip(larger, tried, strict=True) if _is_reached(t, machine))
         text = _head(named) + project_text({**made, "": {**made[""], "machine": named}})
         return Proposal(
             text=text,
@@ -161,33 +170,50 @@ def _bases(table: tuple[float, ...], most: float) -> Iterator[float]:
 
 def _checked(tables: Mapping[str, Mapping[str, object]], machine: Path) -> Brief:
     """The project, resolved and past the first checks; raises the refusal."""
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "project.toml"
-        path.write_text(project_text(tables), encoding="utf-8")
-        brief = replace(read_project(path), path=Path("project.toml"), machine_path=machine)
+    brief = _read(tables, machine)
     check_seat(brief)
     feasibility(brief).check()
     return brief
 
 
-def _passes(tables: Mapping[str, Mapping[str, object]], machine: Path) -> bool:
+def _read(tables: Mapping[str, Mapping[str, object]], machine: Path) -> Brief:
+    """The project, resolved."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "project.toml"
+        path.write_text(project_text(tables), encoding="utf-8")
+        return replace(read_project(path), path=Path("project.toml"), machine_path=machine)
+
+
+def _is_reached(tables: Mapping[str, Mapping[str, object]], machine: Path) -> bool:
+    """Whether a project passes seat and reach.
+
+    What is only told of it needs no more: a larger base has more room for the same faces.
+    """
     try:
-        _checked(tables, machine)
+        brief = _read(tables, machine)
+        check_seat(brief)
+        _reach_alone(brief).check()
     except (NotReachable, NotBuildable, BadFile):
         return False
     return True
 
 
+def _reach_alone(brief: Brief) -> Feasibility:
+    """Whether enough of the blank is reached, whatever room the faces have."""
+    return feasibility(replace(brief, options=replace(brief.options, family="balls")))
+
+
 def _other_place(brief: Brief, beside: float) -> float:
     """Farthest place along x of the table, up to one beside the edge, mm; 0 for none.
 
-    The seat binds as a rule, so every centimetre is tried with it, and few with the reach.
+    The seat binds as a rule, so every centimetre is tried with it, and few with the reach. A
+    further set-up touches what the first one placed: it needs no room of its own.
     """
     places = np.arange(np.floor(beside / STEP_OF_PLACE) * STEP_OF_PLACE, 0.0, -STEP_OF_PLACE)
     seats = [place for place in places if stands(brief, _moved(brief, place))]
     for place in seats[:: max(1, len(seats) // MOST_PLACES)]:
         there = replace(brief, setups=(_moved(brief, place),))
-        if feasibility(there).refusal is None:
+        if _reach_alone(there).refusal is None:
             return float(place)
     return 0.0
 

@@ -127,13 +127,15 @@ def _written(args: argparse.Namespace, text: str) -> None:
 
 def _proposed(args: argparse.Namespace) -> int:
     """Write a project that suits a machine."""
+    from matstd.progress import stages
     from matstd.stages.proposal import propose
     from matstd.twin.files import write_whole
 
     machine, output = Path(args.machine), args.output
     folder = Path(output).parent if output is not None else Path()
     named = Path(relpath(machine, folder)).as_posix()
-    found = propose(machine, named, tuple(args.table_mm) if args.table_mm else None)
+    with stages() as show:
+        found = propose(machine, named, tuple(args.table_mm) if args.table_mm else None, show)
     if output is None:
         print(found.text, end="")
         return 0
