@@ -8,15 +8,18 @@ times correction, micrometres, and stay where they are.
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.sparse import csr_array, kron
 
 from matstd.artefact.body import FreeformPatch
+from matstd.artefact.certify.block_tridiagonal import Blocks, Eliminated
 from matstd.artefact.certify.waviness import dense_lines, u_waves
 from matstd.twin.frames import Array
 from matstd.twin.numbers import rms
 
 _WEIGHTS = np.logspace(-8.0, 4.0, 49)  # of the bending: from no penalty to a plane
+_MOST_USED = 0.8  # of the points: a fit that follows every one shows no noise
 _ROUNDS = 3  # constant after two
-_UNIT, _RIDGE = 1e-4, 1e-12  # weight at which the fit is made diagonal; of its trace
+_RIDGE = 1e-12  # of the trace
 _GRID = 3.0  # mm between the places over which the uncertainty of the surface is averaged
 
 
@@ -57,29 +60,35 @@ def corrected_face(
     fitted = points[~judging]
     uv, deviation, tilt = _deviations(patch, fitted)
     # a change of height moves the surface along its normal by the cosine of the slope
-    B = _basis(patch, uv) / tilt[:, None]
-    smooth = _Smooth.of(B, _bending(patch), u_point)
-    before = np.zeros(len(B))
+    B = _basis(patch, uv, tilt)
+    smooth = _Smooth.of(B, deviation, _bending(patch), patch.degree[0] * heights.shape[1])
+    before = np.zeros(len(fitted))
     for _ in range(_ROUNDS):
-        c, root, excess = smooth.fit(deviation + before)
+        total = deviation + before
+        c = smooth.coefficients(total)
         heights, before = patch.heights + c.reshape(heights.shape), B @ c
         _, deviation, _ = _deviations(replace(patch, heights=heights), fitted)
+    scatter = smooth.scatter(total)
+    # the Bayesian covariance of the penalised fit includes the bias by the penalty
+    noise = max(u_point, scatter) / np.sqrt(len(fitted))
+    excess = np.sqrt(max(scatter**2 - u_point**2, 0.0))
     made = replace(patch, heights=heights)
     grid = patch.grid(_GRID)
-    slope = np.hypot(patch.jet(grid).hu, patch.jet(grid).hv)
-    G = _basis(patch, grid) / np.sqrt(1.0 + slope**2)[:, None]
-    u = np.linalg.norm(G @ root, axis=1)
+    flat, slope = _basis(patch, grid), np.hypot(patch.jet(grid).hu, patch.jet(grid).hv)
+    G = _basis(patch, grid, np.sqrt(1.0 + slope**2))
+    inverse = smooth.matrix.inverse().sparse()
+    u = noise * np.sqrt((G @ inverse).multiply(G).sum(axis=1))
     _, left, _ = _deviations(made, points)
     # what lines show contains the error of the fit; without lines residuals stand for it
     alone = float(np.hypot(rms(u), excess))
     u_form = u_waves(left[judging], u_point) if judging.any() else alone
     assumed = waviness * np.sqrt(0.5 * seen.count(False))
-    plane = np.column_stack([np.ones(len(grid)), grid])
-    tilts = np.linalg.lstsq(plane, _basis(patch, grid) @ root, rcond=None)[0][1:]
+    tilts = flat.T @ np.linalg.pinv(np.column_stack([np.ones(len(grid)), grid]))[1:].T
+    u_tilts = noise * np.sqrt(np.sum(tilts * smooth.matrix.solve(tilts), axis=0))
     return CorrectedFace(
         patch=made,
         u_form=float(np.hypot(u_form, assumed)),
-        u_tilt=float(np.linalg.norm(tilts) / np.sqrt(2.0)),
+        u_tilt=rms(u_tilts),
         moved=float(np.abs(G @ c).max()),
         offset=float((G @ c).mean()),
         left=left,
@@ -95,10 +104,23 @@ def _deviations(patch: FreeformPatch, points: Array) -> tuple[Array, Array, Arra
     return uv, deviation, np.sqrt(1.0 + jet.hu**2 + jet.hv**2)
 
 
-def _basis(patch: FreeformPatch, uv: Array) -> Array:
-    """Height at uv per unit of every control height, (N, poles)."""
-    along_u, along_v = (_splines(patch, k, uv[:, k]) for k in (0, 1))
-    return np.asarray((along_u[:, :, None] * along_v[:, None, :]).reshape(len(uv), -1))
+def _basis(patch: FreeformPatch, uv: Array, over: Array | None = None) -> csr_array:
+    """Height at uv per unit of every control height, over some numbers (N,), (N, poles)."""
+    from scipy.interpolate import BSpline
+
+    along = [
+        BSpline.design_matrix(x, knots, k)
+        for x, knots, k in zip(uv.T, (patch.knots_u, patch.knots_v), patch.degree, strict=True)
+    ]
+    (u, i), (v, j) = (
+        (one.data.reshape(len(uv), -1), one.indices.reshape(len(uv), -1)) for one in along
+    )
+    values = u if over is None else u / over[:, None]
+    values = values[:, :, None] * v[:, None, :]
+    poles = i[:, :, None] * patch.heights.shape[1] + j[:, None, :]
+    places = np.arange(len(uv) + 1) * values[0].size
+    shape = len(uv), patch.heights.size
+    return csr_array((values.reshape(-1), poles.reshape(-1), places), shape=shape)
 
 
 def _splines(patch: FreeformPatch, k: int, x: Array, order: int = 0) -> Array:
@@ -109,7 +131,7 @@ def _splines(patch: FreeformPatch, k: int, x: Array, order: int = 0) -> Array:
     return np.asarray(BSpline(knots, np.eye(patch.heights.shape[k]), patch.degree[k])(x, order))
 
 
-def _bending(patch: FreeformPatch) -> Array:
+def _bending(patch: FreeformPatch) -> csr_array:
     """Quadratic form of the bending, mean of ``h_uu^2 + 2 h_uv^2 + h_vv^2``, (poles, poles).
 
     It is relative to the size of the face.
@@ -118,59 +140,62 @@ def _bending(patch: FreeformPatch) -> Array:
     for k in (0, 1):
         x = np.unique(patch.grid(_GRID, beyond=1.0)[:, k])
         ways = [_splines(patch, k, x, order) for order in (0, 1, 2)]
-        gram.append([one.T @ one / len(x) for one in ways])
+        gram.append([csr_array(one.T @ one / len(x)) for one in ways])
     (u0, u1, u2), (v0, v1, v2) = gram
-    form = np.kron(u2, v0) + 2.0 * np.kron(u1, v1) + np.kron(u0, v2)
-    return np.asarray(form * max(patch.half_size) ** 4)
+    form = kron(u2, v0) + 2.0 * kron(u1, v1) + kron(u0, v2)
+    return csr_array(form * max(patch.half_size) ** 4)
 
 
 @dataclass(frozen=True, eq=False)
 class _Smooth:
-    """A penalised fit at fixed foot points, solved for every weight at once.
-
-    With the vectors V that make gram + w0 penalty the unit and gram diagonal (mu), the matrix of
-    the fit with the weight w is ``mu + w / w0 (1 - mu)``, and so is its trace.
+    """A penalised fit at fixed foot points.
 
     Attributes:
         B: Deviations per coefficient, (N, M).
-        V: The vectors, (M, M).
-        mu: Share of the points in each, (M,).
-        u_point: Smallest standard uncertainty of a point, mm.
+        matrix: ``B^T B / N`` and the weighted penalty.
+        used: Trace of H, which makes fitted deviations of measured ones.
     """
 
-    B: Array
-    V: Array
-    mu: Array
-    u_point: float
+    B: csr_array
+    matrix: Eliminated
+    used: float
 
     @staticmethod
-    def of(B: Array, penalty: Array, u_point: float) -> "_Smooth":
-        """For deviations per coefficient (N, M) and a penalty (M, M)."""
-        from scipy.linalg import eigh
+    def of(B: csr_array, d: Array, penalty: csr_array, size: int) -> "_Smooth":
+        """With the weight that cross-validation selects, ``N |d - H d|^2 / (N - tr H)^2``.
 
-        gram = B.T @ B / len(B)
-        unit = gram + _UNIT * penalty + _RIDGE * np.trace(gram) * np.eye(len(gram))
-        mu, V = eigh(gram, unit)
-        return _Smooth(B, V, np.clip(mu, 0.0, 1.0), u_point)
-
-    def fit(self, d: Array) -> tuple[Array, Array, float]:
-        """Coefficients, square root of their covariance, and scatter beyond that of a point, mm.
-
-        The weight minimises ``n |d - H d|^2 / (n - tr H)^2``.
+        Args:
+            B: Deviations per coefficient, (N, M).
+            d: Measured deviations, (N,), mm.
+            penalty: Of coefficients, (M, M).
+            size: Number of coefficients that make blocks which couple with their neighbours alone.
         """
-        n, best = len(d), None
-        right, BV = self.V.T @ (self.B.T @ d) / n, self.B @ self.V
-        for weight in _WEIGHTS:
-            stiff = self.mu + weight / _UNIT * (1.0 - self.mu) + _RIDGE
-            used = float(np.sum(self.mu / stiff))
-            left = d - BV @ (right / stiff)
-            score = n * float(left @ left) / max(n - used, 1e-3) ** 2
-            if used < 0.8 * n and (best is None or score < best[0]):
-                best = score, stiff, used, float(left @ left)
-        assert best is not None
-        _, stiff, used, squares = best
-        scatter = float(np.sqrt(squares / max(n - used, 1.0)))
-        noise = max(self.u_point, scatter)
-        # the Bayesian covariance of the penalised fit includes the bias by the penalty
-        root = self.V / np.sqrt(stiff) * noise / np.sqrt(n)
-        return self.V @ (right / stiff), root, float(np.sqrt(max(scatter**2 - self.u_point**2, 0)))
+        gram = csr_array(B.T @ B / B.shape[0])
+        ridge, whole = _RIDGE * float(gram.trace()), Blocks.of(gram, size)
+        bending = Blocks.of(penalty, size)
+
+        def weighted(weight: float) -> "_Smooth":
+            matrix = Eliminated(whole.plus(bending, weight, ridge))
+            return _Smooth(B, matrix, used=matrix.inverse().dot(whole))
+
+        # every weight: a minimum of its own stands where the fit begins to follow single points
+        return min(map(weighted, _WEIGHTS.tolist()), key=lambda fit: fit.score(d))
+
+    def coefficients(self, d: Array) -> Array:
+        """Coefficients for deviations (N,), (M,), mm."""
+        return self.matrix.solve(self.B.T @ d) / len(d)
+
+    def score(self, d: Array) -> float:
+        """What cross-validation minimises; infinite where the fit follows every point."""
+        n = len(d)
+        if self.used >= _MOST_USED * n:
+            return np.inf
+        return n * self._squares(d) / (n - self.used) ** 2
+
+    def scatter(self, d: Array) -> float:
+        """Standard deviation of a point beside the fit, mm."""
+        return float(np.sqrt(self._squares(d) / max(len(d) - self.used, 1.0)))
+
+    def _squares(self, d: Array) -> float:
+        left = d - self.B @ self.coefficients(d)
+        return float(left @ left)

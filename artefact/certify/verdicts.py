@@ -9,7 +9,7 @@ the stated uncertainties of CMM and temperature (k = 2), its uncertainty from th
 balls: a scale that their position errors can cause remains undecided.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -18,7 +18,8 @@ from matstd.artefact.body import Standard, Verdict
 from matstd.artefact.certify.calibration_fit import CalibrationFit
 from matstd.twin.frames import Array, skew
 
-_COMMON_TOLERANCE = 0.1  # of a common offset: largest difference of radii or faces from it
+_ON_FACES = 0.5  # of a common offset: largest difference of a face from it
+_FEW = 0.5  # of the balls, below which those of another diameter are the exception
 _SCALE_GUARD = 3.0 / 1.65
 """Widens the guard band of the scale to three standard uncertainties: its tolerance is far smaller
 than the scatter of balls that conform, of which 1.65 would refuse one piece in twenty."""
@@ -56,9 +57,11 @@ class CommonCause:
     """One cause of many deviations.
 
     Attributes:
-        kind: `radius`: the same error of all radii; `scale`: of all distances.
-        value: Mm of radius, or the relative scale.
-        spread: Largest difference of a ball from it, mm; standard uncertainty of the scale.
+        kind: `radius`: the same error of all radii; `scale`: of all distances; `ball`: of a few
+            balls alone.
+        value: Mm of radius, the largest of `ball`; or the relative scale.
+        spread: Largest difference of another ball from it, mm; standard uncertainty of the scale.
+        features: Balls whose radii alone are wrong.
         on_faces: Whether all faces are offset by the same amount along their normals.
         temperature: Above 20 degC that would explain the scale by expansion, K; nan if none.
     """
@@ -68,6 +71,7 @@ class CommonCause:
     spread: float
     on_faces: bool = False
     temperature: float = float("nan")
+    features: tuple[str, ...] = ()
 
 
 def with_verdicts(
@@ -79,8 +83,9 @@ def with_verdicts(
     verdicts += _of_faces(nominal, found, allowed, frame)
     scale = frame.scale(allowed, nominal.material.expansion)
     causes = []
-    if any(v.is_refused for v in verdicts if v.characteristic == "diameter"):
-        causes += _common_radius(nominal, found)
+    diameters = [v for v in verdicts if v.characteristic == "diameter"]
+    if any(v.is_refused for v in diameters):
+        causes += _cause_of_diameters(diameters, found)
     if scale.is_refused:
         causes.append(frame.cause(nominal.material.expansion))
     known = found.standard.known
@@ -213,14 +218,23 @@ def _of_faces(
     return out
 
 
-def _common_radius(nominal: Standard, found: CalibrationFit) -> list[CommonCause]:
-    """The offset that all radii share, if they do."""
-    pairs = zip(nominal.spheres, found.standard.spheres, strict=True)
-    off = np.array([b.radius - a.radius for a, b in pairs if a.name in found.u_radius])
+def _cause_of_diameters(diameters: Sequence[Verdict], found: CalibrationFit) -> list[CommonCause]:
+    """Whether all radii share an offset beside which every ball conforms, or a few balls differ.
+
+    Balls differ among themselves within the tolerance of the drawing, and points of one ball share
+    an error: what is left beside a common cause is judged as a diameter is.
+    """
+    off = 0.5 * np.array([v.deviation for v in diameters])
     common = float(np.median(off))
-    spread = float(np.abs(off - common).max())
-    if spread > max(_COMMON_TOLERANCE * abs(common), 3.0 * max(found.u_radius.values())):
+    beside = [replace(v, deviation=v.deviation - 2.0 * common) for v in diameters]
+    wrong = [v for v in diameters if v.is_refused]
+    if len(wrong) < _FEW * len(diameters):
+        fine = [abs(v.deviation) for v in diameters if not v.is_refused]
+        largest = 0.5 * max((v.deviation for v in wrong), key=abs)
+        names = tuple(v.feature for v in wrong)
+        return [CommonCause("ball", largest, 0.5 * max(fine), features=names)]
+    if any(v.is_refused for v in beside):
         return []
     faces = np.array(list(found.offset.values()))
-    on_faces = len(faces) > 0 and bool(np.abs(faces - common).max() < 0.5 * abs(common))
-    return [CommonCause("radius", common, spread, on_faces)]
+    on_faces = len(faces) > 0 and bool(np.abs(faces - common).max() < _ON_FACES * abs(common))
+    return [CommonCause("radius", common, float(np.abs(off - common).max()), on_faces)]

@@ -7,6 +7,7 @@ from matstd.artefact.certify import GAP, CalibrationFit, CommonCause
 from matstd.artefact.layout import DEFAULT_MODULUS
 from matstd.report.numbers import digits, um
 from matstd.twin.units import GPA, T_REF, UM, URAD
+from matstd.twin.words import listed
 
 PPM = 1e-6
 _SIGNED = ("diameter", "scale")
@@ -91,6 +92,14 @@ def _cause(cause: CommonCause) -> str:
         return (
             f"all radii are {_um(abs(cause.value))} too {way}, to within {_um(cause.spread)}, and "
             f"{faces} compensated wrongly; qualify the stylus and measure again"
+        )
+    if cause.kind == "ball":
+        way, alone = "large" if cause.value > 0.0 else "small", len(cause.features) == 1
+        return (
+            f"the radius of {listed(list(cause.features))} alone is {'' if alone else 'up to '}"
+            f"{_um(abs(cause.value))} too {way}, all others are right to within "
+            f"{_um(cause.spread)}: another ball than ordered, or dirt on it; clean it and measure "
+            "again"
         )
     way = "long" if cause.value > 0.0 else "short"
     text = (

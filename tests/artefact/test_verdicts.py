@@ -26,6 +26,9 @@ MORE = ((-60.0, -30.0, 58.0), (62.0, 45.0, 66.0), (-5.0, 60.0, 75.0), (40.0, -55
 
 NOISE = 0.2 * UM
 
+SCATTER = {f"SPH{k}": off * UM for k, off in enumerate((1.1, -1.0, 0.2, -0.6, 0.0, 1.0, -0.9), 1)}
+"""Of the radii of bought balls, within the 1.25 µm of the drawing."""
+
 
 @pytest.fixture(scope="module")
 def nominal(upright):
@@ -138,6 +141,22 @@ def test_a_piece_as_drawn_conforms(nominal, drawn, capsys):
             "all radii are 20 µm too large, .* the faces deviate by the same amount: the radius",
         ),
         ({"radii": -20 * UM, "tip": -20 * UM}, "all radii are 20 µm too small"),
+        (  # bought balls differ by their own diameters, within the drawing
+            {"radii": 10 * UM, "tip": 10 * UM, "one_radius": SCATTER},
+            r"all radii are (9\.9|10) µm too large, .* deviate by the same amount: the radius",
+        ),
+        (
+            {"radii": -10 * UM, "one_radius": SCATTER},
+            r"all radii are (9\.9|10) µm too small, .* do not: balls of another diameter",
+        ),
+        (
+            {"one_radius": SCATTER | {"SPH5": 10 * UM}},
+            r"1 of 24 .* SPH5 diameter 20 µm .2.5 µm .* radius of SPH5 alone is (9\.9|10) µm",
+        ),
+        (
+            {"one_radius": SCATTER | {"SPH2": -9 * UM, "SPH5": -10 * UM}},
+            r"2 of 24 .* radius of SPH2 and SPH5 alone is up to (9\.9|10) µm too small, all others",
+        ),
         ({"one_radius": {"SPH3": 6 * UM}}, "1 of 24 .* SPH3 diameter 12 µm .2.5 µm allowed"),
         ({"faces": {"FF2": 370 * UM}}, "1 of 24 .* FF2 profile 370 µm .25 µm allowed"),
         ({"beside": {"SPH5": (0.3, 0.2, 0.0)}}, "SPH5 position .* .100 µm allowed"),
@@ -168,6 +187,13 @@ def test_a_fault_is_refused_and_named_and_can_be_accepted(nominal, drawn, capsys
         standard.known.accepted
     )
     assert standard.known.accepted[0] in standard.remarks[0]
+
+
+def test_radii_that_share_no_offset_have_no_common_cause(drawn, capsys):
+    off = (9.0, -9.0, 14.0, -6.0, 5.0, -8.0, 7.0)
+    wrong = {f"SPH{k}": value * UM for k, value in enumerate(off, 1)}
+    assert calibrate(drawn, measured(drawn, one_radius=wrong))[0] == 2
+    assert "; measure again, or remake the feature" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(
