@@ -6,8 +6,9 @@ touches can and cannot determine (`IdentifiabilityReport`), with what would reso
 
 from matstd.artefact.compare.alternatives import Alternative
 from matstd.artefact.compare.comparison import (
+    Compared,
     Rival,
-    compare,
+    compared,
     evaluate_rival,
     prior_rms,
     random_lots,
@@ -28,11 +29,12 @@ __all__ = [
     "FALSE_ALARM",
     "MODEL_ERROR",
     "Alternative",
+    "Compared",
     "IdentifiabilityReport",
     "Power",
     "Rival",
     "WorstRegions",
-    "compare",
+    "compared",
     "evaluate_rival",
     "identifiability_report",
     "prior_rms",

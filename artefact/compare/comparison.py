@@ -4,8 +4,8 @@ Every artefact is given its best table poses and touches by the criterion of the
 the difference in predicted error is due to the bodies alone.
 """
 
-from collections.abc import Sequence
-from contextlib import suppress
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,7 +16,6 @@ from matstd.artefact.reach import Requests, joined, spread_poses
 from matstd.artefact.worth import (
     BallPlaces,
     Criterion,
-    Surfaces,
     TouchOptions,
     Visibility,
     chosen_poses,
@@ -136,7 +135,23 @@ def prior_rms(criterion: Criterion) -> tuple[float, float]:
     )
 
 
-def compare(
+@dataclass(frozen=True, eq=False)
+class Compared:
+    """Other artefacts at as many touches.
+
+    Attributes:
+        of_balls: Those of balls alone, on which a standard is built.
+        unreachable: Names of those without room on the blank or with too few possible touches.
+        all: Waits for every artefact, in the order in which they are reported.
+    """
+
+    of_balls: tuple[Rival, ...]
+    unreachable: tuple[str, ...]
+    all: Callable[[], tuple[Rival, ...]]
+
+
+@contextmanager
+def compared(
     criterion: Criterion,
     places: BallPlaces | None,
     all_poses: Array,
@@ -145,62 +160,100 @@ def compare(
     library: Visibility,
     rng: np.random.Generator,
     balls: int = COUNTS[-1],
-) -> tuple[tuple[Rival, ...], tuple[str, ...]]:
+) -> Iterator[Compared]:
     """Other artefacts at as many touches: bodies in use, and ideal scatter.
 
     Spheres, their table poses and touches are chosen as those of the standard; touches on block and
     face are chosen from random candidates. Angle, travels, clearance and calibration are the same
     for all. The ideal scatter has any points and normals in the volume and no obstacles.
 
+    Two cores share the artefacts of balls; all others are judged by the second one while the first
+    goes on.
+
     Args:
         places: Candidate balls; None where the machine touches none.
         all_poses: Candidate table poses, (K, R), rad.
         balls: Number of balls that the standard may have, one more of the `COUNTS`.
-
-    Returns:
-        The artefacts, and the names of those without room on the blank or with too few possible
-        touches.
     """
+    jobs, unreachable = _jobs(criterion, places, all_poses, blank, options, rng, balls)
+    # nothing is drawn from here on
+    first = sum(job.is_relaxed for job in jobs)  # artefacts of balls come first
+    with beside(_judged, jobs[1:first:2], options, library) as theirs:
+        mine, odd = _judged(jobs[:first:2], options, library), theirs()
+    of_balls = tuple((odd if k % 2 else mine)[k // 2] for k in range(first))
+    with beside(_judged, jobs[first:], options, library) as others:
+        yield Compared(of_balls, unreachable, lambda: (*of_balls, *others()))
+
+
+def _jobs(
+    criterion: Criterion,
+    places: BallPlaces | None,
+    all_poses: Array,
+    blank: Blank,
+    options: TouchOptions,
+    rng: np.random.Generator,
+    most: int,
+) -> tuple[list["_Job"], tuple[str, ...]]:
+    """What is to be judged, with all that is drawn; and the names of what cannot be."""
     jobs, unreachable = list[_Job](), list[str]()
-    for name, body in _bodies(criterion, places, blank, options, rng, balls).items():
-        try:
-            if body is None:
-                raise NotReachable("no room")
-            here = criterion.on(body)
-            surfaces: Surfaces = (*body.patches, *body.spheres)
-            own = chosen_poses(criterion.plain.on(body), body, surfaces, all_poses, options)
-            if body.patches:
-                tried = some_touches(here, body, own, options, rng)
-            else:
-                tried = touches_to_choose_from(here.reach, body, surfaces, own, options.touches)
-                if len(tried) < options.touches:
-                    raise NotReachable("too few touches")
-        except NotReachable:
+    counts = sorted({*COUNTS, most})
+    given = criterion, places, all_poses, blank, options
+    with beside(_on_balls, counts[1::2], *given) as theirs:
+        on_balls = _on_balls(counts[::2], *given)
+        on_balls |= theirs()
+    bodies = rivals(criterion.volume, blank, rng)
+    for count in counts:
+        name, (body, tried) = f"{count} spheres", on_balls[count]
+        if body is None or tried is None:
             unreachable.append(name)
             continue
         lots = random_lots(tried, options.touches, rng)
-        jobs.append(
-            _Job(
-                name=name,
-                here=here,
-                tried=tried,
-                lots=lots,
-                by=here.name,
-                is_relaxed=not body.patches,
-            )
-        )
+        jobs.append(_job(name, criterion.on(body), tried, lots, is_relaxed=True))
+    for name, body in bodies.items():
+        try:
+            here = criterion.on(body)
+            own = chosen_poses(criterion.plain.on(body), body, body.patches, all_poses, options)
+            tried = some_touches(here, body, own, options, rng)
+        except NotReachable:
+            unreachable.append(name)
+            continue
+        jobs.append(_job(name, here, tried, random_lots(tried, options.touches, rng)))
     tried = _scatter(criterion, spread_poses(all_poses, options.poses), rng)
     lots = random_lots(tried, options.touches, rng)
     for name, by in (("chosen by I", "I"), ("chosen by D", "D"), ("at random", "")):
         jobs.append(
             _Job(name=f"ideal scatter, {name}", here=criterion, tried=tried, lots=lots, by=by)
         )
-    # nothing is drawn from here on: two cores share them
-    with beside(_judged, jobs[1::2], options, library) as others:
-        mine = _judged(jobs[::2], options, library)
-        theirs = others()
-    out = (mine[k // 2] if k % 2 == 0 else theirs[k // 2] for k in range(len(jobs)))
-    return tuple(out), tuple(unreachable)
+    return jobs, tuple(unreachable)
+
+
+def _on_balls(
+    counts: Sequence[int],
+    criterion: Criterion,
+    places: BallPlaces | None,
+    all_poses: Array,
+    blank: Blank,
+    options: TouchOptions,
+) -> dict[int, tuple[Standard | None, Requests | None]]:
+    """The best balls by their number, and the touches on them at the best table poses.
+
+    No body where the blank has no room, no touches where too few are possible.
+    """
+    out: dict[int, tuple[Standard | None, Requests | None]] = {}
+    for count in counts:
+        balls = places.best(count, options.touches) if places is not None else []
+        body = with_spheres(blank, [b.centre for b in balls]) if len(balls) == count else None
+        out[count] = body, None
+        if body is None:
+            continue
+        with suppress(NotReachable):
+            own = chosen_poses(criterion.plain.on(body), body, body.spheres, all_poses, options)
+            tried = touches_to_choose_from(
+                criterion.reach, body, body.spheres, own, options.touches
+            )
+            if len(tried) >= options.touches:
+                out[count] = body, tried
+    return out
 
 
 @dataclass(frozen=True, eq=False)
@@ -223,6 +276,13 @@ class _Job:
     is_relaxed: bool = False
 
 
+def _job(
+    name: str, here: Criterion, tried: Requests, lots: list[Requests], is_relaxed: bool = False
+) -> _Job:
+    """An artefact whose touches are chosen by the criterion of the standard."""
+    return _Job(name, here, tried, lots, here.name, is_relaxed)
+
+
 def _judged(jobs: Sequence[_Job], options: TouchOptions, library: Visibility) -> list[Rival]:
     """Figures of artefacts after their chosen touches."""
     out = []
@@ -235,24 +295,6 @@ def _judged(jobs: Sequence[_Job], options: TouchOptions, library: Visibility) ->
         available = len(tried) if here.body is None else _count_different(tried)
         out.append(evaluate_rival(job.name, here, chosen, job.lots, library, available, here.body))
     return out
-
-
-def _bodies(
-    criterion: Criterion,
-    places: BallPlaces | None,
-    blank: Blank,
-    options: TouchOptions,
-    rng: np.random.Generator,
-    most: int,
-) -> dict[str, Standard | None]:
-    """Artefacts by name; None where the blank has no room."""
-    named: dict[str, Standard | None] = {}
-    for count in sorted({*COUNTS, most}):
-        balls = places.best(count, options.touches) if places is not None else []
-        there = len(balls) == count
-        centres = [ball.centre for ball in balls]
-        named[f"{count} spheres"] = with_spheres(blank, centres) if there else None
-    return named | rivals(criterion.volume, blank, rng)
 
 
 def random_lots(tried: Requests, count: int, rng: np.random.Generator) -> list[Requests]:

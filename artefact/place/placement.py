@@ -20,7 +20,7 @@ from matstd.artefact.brief import Brief, Goal
 from matstd.artefact.compare import (
     Power,
     Rival,
-    compare,
+    compared,
     evaluate_rival,
     prior_rms,
     proof_power,
@@ -149,21 +149,21 @@ def design_standard(
     bodies = _small_faces(brief, places, all_poses, rng)
     progress("placement", _PLACES, 100)
     library = _visible_effects(criterion, max(choice.touches, _MIN_FREE_TOUCHES), rng)
-    rivals, unreachable = compare(
-        criterion, places, all_poses, blank, choice, library, rng, options.balls
-    )
-    progress("placement", _RIVALS, 100)
-    site = site_of(brief, criterion, places, bodies, rivals, all_poses)
-    built, families = built_family(site)
-    requests, proof, tried = built.requests, built.proof, built.found.tried
-    here = criterion.on(replace(built.standard, patches=()))
-    powers = _powers(criterion.on(built.standard), built, choice.proof, library, rng)
-    standard = with_error_shares(criterion, built.standard, proof)
-    progress("placement", _CHOSEN, 100)
-    lots = random_lots(tried, len(requests), rng)
-    own = evaluate_rival(
-        f"standard {options.name}", here, requests, lots, library, len(tried), standard
-    )
+    choices = criterion, places, all_poses, blank, choice, library, rng, options.balls
+    with compared(*choices) as others:
+        progress("placement", _RIVALS, 100)
+        site = site_of(brief, criterion, places, bodies, others.of_balls, all_poses)
+        built, families = built_family(site)
+        requests, proof, tried = built.requests, built.proof, built.found.tried
+        here = criterion.on(replace(built.standard, patches=()))
+        powers = _powers(criterion.on(built.standard), built, choice.proof, library, rng)
+        standard = with_error_shares(criterion, built.standard, proof)
+        progress("placement", _CHOSEN, 100)
+        lots = random_lots(tried, len(requests), rng)
+        own = evaluate_rival(
+            f"standard {options.name}", here, requests, lots, library, len(tried), standard
+        )
+        rivals = own, *others.all()
     progress("placement", 100, 100)
     return Placement(
         standard=standard,
@@ -171,7 +171,7 @@ def design_standard(
         proof=proof,
         criterion=criterion,
         prior_rms=prior_rms(criterion),
-        rivals=(own, *rivals),
+        rivals=rivals,
         certificate=built.found.nearness,
         power=powers[0],
         power_in_volume=powers[1],
@@ -180,7 +180,7 @@ def design_standard(
         family=built.family,
         families=families,
         goal=options.goal,
-        unreachable=unreachable,
+        unreachable=others.unreachable,
     )
 
 

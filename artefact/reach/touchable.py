@@ -13,7 +13,14 @@ from matstd.artefact.body import Meeting, Standard, contact
 from matstd.artefact.reach.probe_clearance import Clearance, ProbeShape
 from matstd.artefact.reach.workshop import Workshop, clearance_in_workshop, still_frames
 from matstd.twin.frames import Array, apply, inverse, turn
-from matstd.twin.machine import Chain, inverse_linear, linear_directions, table_to_tool
+from matstd.twin.machine import (
+    Chain,
+    inverse_linear,
+    linear_directions,
+    table_to_tool,
+    tool_and_directions,
+)
+from matstd.twin.numbers import distinct_rows
 from matstd.twin.record import IntArray, Labels, Setup, Touches, linear_approach
 from matstd.twin.units import DEG
 
@@ -103,7 +110,10 @@ class ProbeReach:
         Raises:
             NotReachable: The machine has not three independent linear axes at some pose.
         """
-        chain, poses = self.chain, self._pose_kinematics(wanted)
+        return self._readings(wanted, gap, self._pose_kinematics(wanted))
+
+    def _readings(self, wanted: Requests, gap: float, poses: "_PoseKinematics") -> Array:
+        chain = self.chain
         rotary = [chain.axis_index(name) for name in chain.rotary_axes]
         q = np.zeros((len(wanted), len(chain.axes)))
         q[:, rotary] = wanted.rotary
@@ -118,19 +128,19 @@ class ProbeReach:
     def _pose_kinematics(self, wanted: Requests) -> "_PoseKinematics":
         """The table poses of touches, with all that depends on the pose alone."""
         chain = self.chain
-        poses, index = np.unique(wanted.rotary, axis=0, return_inverse=True)
+        poses, index = distinct_rows(wanted.rotary)
         q = np.zeros((len(poses), len(chain.axes)))
         q[:, [chain.axis_index(name) for name in chain.rotary_axes]] = poses
         target = np.tile(self.setup.T_table_artefact[:3, 3], (len(poses), 1))
         q = inverse_linear(chain, target, q, self.length)
-        along = linear_directions(chain, q)
+        T_table_tool, along = tool_and_directions(chain, q)
         unit = np.broadcast_to(np.eye(3), along.shape)
         return _PoseKinematics(
-            index=index.reshape(-1),
+            index=index,
             q=q,
             tip=target,
             inverse=np.asarray(np.linalg.solve(along, unit), dtype=np.float64),
-            T_table_tool=table_to_tool(chain, q),
+            T_table_tool=T_table_tool,
             along=along,
         )
 
@@ -175,9 +185,10 @@ class ProbeReach:
 
     def is_reachable(self, wanted: Requests) -> Mask:
         """Touches within the angle to the tool axis and within every travel, (N,)."""
-        good: Mask = self._cosine(wanted) >= np.cos(self.steepest)
+        poses = self._pose_kinematics(wanted)
+        good: Mask = self._cosine(wanted, poses) >= np.cos(self.steepest)
         for gap in self.gaps:
-            good &= (self._excess(self.readings(wanted, gap)) == 0.0).all(axis=1)
+            good &= (self._excess(self._readings(wanted, gap, poses)) == 0.0).all(axis=1)
         return good
 
     def is_clear(self, standard: Standard, wanted: Requests) -> Mask:
@@ -220,9 +231,8 @@ class ProbeReach:
         """Between ball and surface at the start of a touch, at the contact, at the search's end."""
         return (self.standoff, 0.0, -self.search)
 
-    def _cosine(self, wanted: Requests) -> Array:
+    def _cosine(self, wanted: Requests, poses: "_PoseKinematics") -> Array:
         """Cosine of the angle between normal and tool axis, (N,)."""
-        poses = self._pose_kinematics(wanted)
         axis = poses.T_table_tool[poses.index, :3, 2]
         cosine: Array = np.einsum(
             "ni,ni->n", axis, turn(self.setup.T_table_artefact, wanted.normal)
@@ -236,7 +246,7 @@ class ProbeReach:
 
     def _out_of_reach(self, one: Requests) -> str:
         """Why one touch is not within angle and travels."""
-        cosine = float(self._cosine(one)[0])
+        cosine = float(self._cosine(one, self._pose_kinematics(one))[0])
         if cosine < np.cos(self.steepest):
             angle = np.arccos(np.clip(cosine, -1.0, 1.0)) / DEG
             return f"the surface leans {angle:.1f} degrees from the tool axis"

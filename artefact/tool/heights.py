@@ -9,7 +9,7 @@ from matstd.artefact.body import Standard
 from matstd.artefact.reach import Workshop, still_frames, table_face
 from matstd.artefact.tool.probe import Probe
 from matstd.twin.frames import Array, apply, inverse
-from matstd.twin.machine import Chain, linear_directions, table_to_tool
+from matstd.twin.machine import Chain, tool_and_directions
 from matstd.twin.record import Labels, Setup
 from matstd.twin.units import DEG
 
@@ -87,15 +87,15 @@ def top_height(chain: Chain, rotary: Array, solid: SolidHull, probe: Probe) -> A
         Shape (V,), mm.
     """
     q = readings_at(chain, rotary)
-    up = linear_directions(chain, q)[:, :, chain.linear_axes.index("Z")]
+    T_table_tool, along = tool_and_directions(chain, q)
+    up = along[:, :, chain.linear_axes.index("Z")]
     highest = np.full(len(q), -np.inf)
     for on, T_still_table in still_frames(solid.on.tolist(), chain, q).items():
         mine, T_table_still = solid.on == on, inverse(T_still_table)
-        along = np.einsum("vji,vj->vi", T_table_still[:, :3, :3], up)
+        level = np.einsum("vji,vj->vi", T_table_still[:, :3, :3], up)
         shift = np.einsum("vi,vi->v", up, T_table_still[:, :3, 3])
-        most = (along @ solid.points[mine].T + solid.radii[mine]).max(axis=1)
+        most = (level @ solid.points[mine].T + solid.radii[mine]).max(axis=1)
         highest = np.maximum(highest, most + shift)
-    T_table_tool = table_to_tool(chain, q)
     up_in_tool = np.einsum("vji,vj->vi", T_table_tool[:, :3, :3], up)
     below = (up_in_tool @ probe.outline().T).min(axis=1)
     below = np.minimum(below, -probe.radius)

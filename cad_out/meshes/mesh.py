@@ -9,6 +9,7 @@ import numpy as np
 
 from matstd.artefact.body import DatumSphere, FreeformPatch, Standard
 from matstd.twin.frames import Array, apply
+from matstd.twin.numbers import distinct_rows
 
 WELD = 1e-6
 """Corners nearer than this are one corner, mm."""
@@ -131,11 +132,18 @@ def write_stl(path: Path, mesh: Mesh) -> None:
 
 def read_stl(path: Path) -> tuple[Array, np.ndarray]:
     """Corners (V, 3) and triangles (F, 3) of an STL file, equal corners joined, order kept."""
-    import trimesh
+    record = np.dtype([("head", "<f4", 3), ("corners", "<f4", (3, 3)), ("tail", "<u2")])
+    data = path.read_bytes()
+    count = int.from_bytes(data[80:84], "little")
+    if len(data) == 84 + count * record.itemsize:
+        every = np.frombuffer(data, record, count, 84)["corners"].reshape(-1, 3)
+    else:  # as text
+        import trimesh
 
-    loaded = trimesh.load_mesh(str(path), file_type="stl", process=False)
-    corners, back = np.unique(np.asarray(loaded.vertices), axis=0, return_inverse=True)
-    return corners, back.reshape(-1)[np.asarray(loaded.faces)]
+        loaded = trimesh.load_mesh(str(path), file_type="stl", process=False)
+        every = np.asarray(loaded.vertices)[np.asarray(loaded.faces)].reshape(-1, 3)
+    corners, back = distinct_rows(every.astype(np.float64))
+    return corners, back.reshape(-1, 3)
 
 
 def is_watertight(corners: Array, triangles: np.ndarray) -> bool:

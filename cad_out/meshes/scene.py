@@ -76,18 +76,19 @@ def write_3mf(path: Path, title: str, pieces: Sequence[Piece]) -> None:
 
 def _object(number: int, piece: Piece, table: Array) -> str:
     colour = (piece.colours[:, None] == table).all(axis=-1).argmax(axis=1)
-    corners = "".join(
-        f'<vertex x="{x:.6f}" y="{y:.6f}" z="{z:.6f}"/>' for x, y, z in piece.mesh.corners.tolist()
-    )
-    triangles = "".join(
-        f'<triangle v1="{a}" v2="{b}" v3="{c}" pid="1" p1="{k}"/>'
-        for (a, b, c), k in zip(piece.mesh.triangles.tolist(), colour.tolist(), strict=True)
-    )
+    corners = _each('<vertex x="%.6f" y="%.6f" z="%.6f"/>', piece.mesh.corners)
+    rows = np.column_stack([piece.mesh.triangles, colour])
+    triangles = _each('<triangle v1="%d" v2="%d" v3="%d" pid="1" p1="%d"/>', rows)
     return (
         f'<object id="{number}" type="model" name={quoteattr(piece.name)} pid="1" '
         f'pindex="{colour[0]}"><mesh><vertices>{corners}</vertices>\n'
         f"<triangles>{triangles}</triangles></mesh></object>\n"
     )
+
+
+def _each(form: str, rows: np.ndarray) -> str:
+    """Rows of numbers, each in a form, all at once."""
+    return (form * len(rows)) % tuple(rows.ravel().tolist())
 
 
 def _hex(rgb: Array) -> str:

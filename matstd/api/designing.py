@@ -121,6 +121,7 @@ class Project:
         from matstd.stages.design import design
         from matstd.stages.refusals import REFUSED_REACH, REFUSED_ROOM, refusals
         from matstd.stages.sheets import write_sheets
+        from matstd.twin.beside import beside
         from matstd.twin.files import results_folder
         from matstd.workers import connected
 
@@ -134,12 +135,13 @@ class Project:
         ):
             made = design(brief, folder, progress, workers)
             progress("report", 0, 1)
-            remarks = write_design_page(made, folder)
-            print_report(folder, printed_by)
-            raised = brief.programs.dry_run
+            raised, sheet = brief.programs.dry_run, folder / SHEET
             tried = MachineErrors.of_errors(brief.chain, made.machines[0].errors)
-            feeds = feeds_of(brief)
-            write_sheets(folder / SHEET, made.stations, feeds, printed_by, raised, tried)
+            given = made.stations, feeds_of(brief), printed_by, raised, tried
+            with beside(write_sheets, sheet, *given) as written:
+                remarks = write_design_page(made, folder)
+                print_report(folder, printed_by)
+                written()
         return replace(made, remarks=tuple(remarks), folder=Path(out))
 
     @one_blas_thread()

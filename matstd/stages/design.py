@@ -5,7 +5,6 @@ Each stage is one call into one room; nothing is computed here.
 
 import shutil
 from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
@@ -41,7 +40,7 @@ from matstd.probe_paths.stations import (
 )
 from matstd.report.drawing import Issuer, write_drawing
 from matstd.report.identifiability import identifiability_table, write_identification
-from matstd.report.pages import Design, Proven
+from matstd.report.pages import Design, Proven, machine_times
 from matstd.report.plots import draw_reach, draw_room
 from matstd.report.style import save
 from matstd.sensitivity.first_order import latin_hypercube
@@ -108,14 +107,17 @@ def _made(
         standard, at = placement.standard, scan_poses(placement.touches)
         path, scan = folder / "scan_path.csv", brief.options.scan
         write_scan_path(path, standard.patches[0], scan, at, brief.reach, standard)
-    with ThreadPoolExecutor(1) as kernel:  # it works in processes of its own
-        cad = kernel.submit(_export, brief, placement.standard, folder, proving.q)
-        _write_standard(folder, placement.standard)
+    making = making_of(placement.standard, stiffness)
+    write_making(folder / "making.json", making)
+    _write_standard(folder, placement.standard)
+    plan = plans[0][1]
+    with (
+        beside(_export, brief, placement.standard, making.make, folder, proving.q) as exported,
+        beside(machine_times, brief, placement, plan) as times,
+    ):
         progress("identifiability", 0, 1)
         known = identifiability_report(placement.criterion, placement.requests, rng.other_setups)
         write_json(folder / "identifiability.json", identifiability_table(known))
-        making = making_of(placement.standard, stiffness)
-        write_making(folder / "making.json", making)
         progress("probing programs", 0, 1)
         stations = make_stations(plans, dialects_of(brief), feeds_of(brief))
         paths = all_programs(stations).write(folder / "programs")
@@ -123,8 +125,7 @@ def _made(
         progress("maps", 0, 1)
         study, maps = studied()
         progress("STEP and STL", 0, 1)
-        conformity = cad.result()  # the last: the kernel takes as long as all of these
-    _draw(brief, placement.standard, conformity.mass, making.make, folder)
+        conformity, on_machine = exported(), times()
     return Design(
         brief=brief,
         study=study,
@@ -139,6 +140,7 @@ def _made(
         effective=tried.effective,
         budgets=tried.budgets,
         visits=tried.visits,
+        times=on_machine,
     )
 
 
@@ -191,28 +193,29 @@ def _worst(placement: Placement, study: Study) -> WorstRegions:
     return worst_regions(on_body, placement.proof, study.q, study.volumetric.recurrence)
 
 
-def _export(brief: Brief, standard: Standard, folder: Path, q: Array) -> Conformity:
-    """STEP, STL, 3MF and glTF of a standard, measured; refused where a clamp stands in it.
+def _export(
+    brief: Brief, standard: Standard, make: Construction, folder: Path, q: Array
+) -> Conformity:
+    """STEP, STL, 3MF and glTF of a standard, measured, and its drawing with the mass found.
+
+    Refused where a clamp stands in it.
 
     Args:
+        make: How the workshop makes it.
         q: Planned readings, (N, A), mm and rad.
     """
     made = export_standard(standard, folder, author=brief.author, organisation=brief.organisation)
     check_beside(brief, standard, read_stl(folder / "standard.stl"), q)
-    return made
-
-
-def _draw(brief: Brief, standard: Standard, mass: float, make: Construction, folder: Path) -> None:
-    """The drawing of a standard as the workshop makes it, with the mass that was measured."""
     issuer = Issuer(
         brief.author,
         brief.organisation,
-        mass=mass,
+        mass=made.mass,
         approved=brief.approved,
         date=brief.date,
         make=make,
     )
     write_drawing(folder, standard, issuer)
+    return made
 
 
 def _feasible_poses(brief: Brief, folder: Path) -> Array:

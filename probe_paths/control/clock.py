@@ -71,7 +71,7 @@ def step_times(
     back = 0.0
     for i, step in enumerate(steps):
         if isinstance(step, Move):
-            change[i] = np.nan_to_num(step.q - q)
+            change[i] = step.q - q
             feed[i] = np.nan if step.feed is None else step.feed
             q, is_motion[i] = step.q, True
             extra[i], back = back, 0.0

@@ -1,5 +1,6 @@
 """Modes, system data and numbers of cycle 4: what a block may set, read and ask for."""
 
+import math
 from collections.abc import Callable, Mapping
 
 import numpy as np
@@ -69,7 +70,8 @@ def _place(datum: Datum, places: Mapping[Datum, str], state: State) -> float:
     if datum not in places:
         return float(state.tool or 0)
     letter, frame = places[datum], state.frame
-    reading = float(np.nan_to_num(state.q[frame.chain.axis_index(letter)], nan=_ANYWHERE))
+    reading = float(state.q[frame.chain.axis_index(letter)])
+    reading = _ANYWHERE if math.isnan(reading) else reading
     if datum.startswith(_PRESET):
         return (state.plane or frame).coordinate(letter, reading)
     return reading if letter in LINEAR else reading / DEG

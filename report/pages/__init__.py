@@ -22,6 +22,7 @@ from matstd.report.pages.diagnosis_page import write_diagnosis_page
 from matstd.report.pages.notebook import drawing
 from matstd.report.pages.setup_page import write_setup_page
 from matstd.report.pages.study_page import write_study_page
+from matstd.report.pages.time_section import machine_times
 from matstd.report.pages.uncertainty_page import write_uncertainty_page
 
 __all__ = [
@@ -34,6 +35,7 @@ __all__ = [
     "Section",
     "Table",
     "drawing",
+    "machine_times",
     "printer",
     "write_compare_page",
     "write_design_page",

@@ -25,7 +25,6 @@ from matstd.report.pages.standard_sections import (
     patch_table,
 )
 from matstd.report.pages.study_page import Shown, draw_study_volumes, study_sections
-from matstd.report.pages.time_section import minutes, order_content, proof_words
 from matstd.report.plots import draw_order, draw_touch_curves, draw_touches
 from matstd.report.scenes import draw_standard
 from matstd.report.words import (
@@ -82,12 +81,10 @@ def write_design_page(design: Design, folder: Path) -> list[str]:
         What could not be drawn and why, one line each; the page states it too.
     """
     remarks = comparison_remarks(design.placement)
-    with ThreadPoolExecutor(2) as beside:  # pictures are rendered in processes of their own
+    with ThreadPoolExecutor(1) as beside:  # pictures are rendered in processes of their own
         drawn = beside.submit(_renderings, design, folder, remarks)
-        counted = beside.submit(_times, design)
         curves, field = _curves(design.placement), _field(design)
         standard, volumes = drawn.result()
-        on_machine, order = counted.result()
     chain, body = design.brief.chain, design.placement.standard
     page = Page(
         title=f"{body.name} for {chain.name}",
@@ -98,10 +95,10 @@ def write_design_page(design: Design, folder: Path) -> list[str]:
         key=_key(design),
         sections=[
             replace(_opening(design, folder, remarks), pictures=standard),
-            *_comparison(design, on_machine, curves),
+            *_comparison(design, curves),
             *proof_sections(design),
             *task_sections(design),
-            *_probing(design, order),
+            *_probing(design),
             Section("The standard", table=patch_table(design)),
             *making_sections(design.making),
             *cad_sections(design.conformity),
@@ -119,7 +116,7 @@ def write_design_page(design: Design, folder: Path) -> list[str]:
             f"Project `{design.brief.path.name}`, seed {design.brief.seed}. Deviations are "
             "tool side minus workpiece side; uncertainties are standard uncertainties (k = 1)."
         ],
-        live=design_live(_scene(design, on_machine, field)),
+        live=design_live(_scene(design, field)),
     )
     write_page(folder / "report.html", page)
     return remarks
@@ -141,21 +138,15 @@ def _field(design: Design) -> ErrorField | None:
     return error_field(design.brief, believed, first.errors, first.fit)
 
 
-def _scene(design: Design, on_machine: dict[str, float], field: ErrorField | None) -> DesignScene:
+def _scene(design: Design, field: ErrorField | None) -> DesignScene:
     """What moves on the page."""
     return DesignScene(
         brief=design.brief,
         placement=design.placement,
         plan=design.plan,
-        minutes=on_machine,
+        minutes=design.times.minutes,
         field=field,
     )
-
-
-def _times(design: Design) -> tuple[dict[str, float], tuple[Table, str]]:
-    """Minutes of every artefact, and the orders of the touches: without any picture."""
-    table, words = order_content(design)
-    return minutes(design), (table, f"{words} {proof_words(design)}".rstrip())
 
 
 def _standard_picture(design: Design, folder: Path, remarks: list[str]) -> list[Picture]:
@@ -238,9 +229,7 @@ def _curves(placement: Placement) -> list[TouchCurve]:
     ]
 
 
-def _comparison(
-    design: Design, on_machine: dict[str, float], curves: list[TouchCurve]
-) -> list[Section]:
+def _comparison(design: Design, curves: list[TouchCurve]) -> list[Section]:
     """What other artefacts would leave unknown."""
     placement = design.placement
     drawn = draw_touch_curves(curves, design.brief.noise)
@@ -254,7 +243,7 @@ def _comparison(
         Section(
             "Comparison with other artefacts",
             sentences=identification_lines(placement, design.worst),
-            table=comparison_table(design, on_machine),
+            table=comparison_table(design),
             notes=[chosen],
         ),
         Section(
@@ -270,15 +259,15 @@ def _on(criterion: Criterion, body: Standard | None) -> Criterion:
     return criterion if body is None else criterion.on(body)
 
 
-def _probing(design: Design, order: tuple[Table, str]) -> list[Section]:
+def _probing(design: Design) -> list[Section]:
     """The plan of touches, the cost of its order, the programs."""
-    plan, poses, (table, words) = design.plan, _poses(design), order
+    plan, poses, times = design.plan, _poses(design), design.times
     come = "The poses come in mixed order and twice" if poses != 1 else "The pose comes twice"
     intro = (
         f"{len(plan)} touches in {len(plan.visits)} visits to {plural(poses, 'table pose')}. "
         f"{come}, the second time in reverse order and from the other side. Each visit begins with "
         f"the same point of a datum sphere, so that drift and reversal can be distinguished from "
-        f"geometry. {words}"
+        f"geometry. {times.words}"
     )
     programs = [
         [f"`programs/{p.file}`", str(p.touches), f"{p.duration / 60.0:.0f}"]
@@ -294,7 +283,7 @@ def _probing(design: Design, order: tuple[Table, str]) -> list[Section]:
     listed = Table(("program", "touches", "minutes"), programs)
     return [
         Section("Probing", sentences=[intro], table=listed, notes=[_CHECKED]),
-        Section(fold="Cost of the order", is_for_screen=True, table=table),
+        Section(fold="Cost of the order", is_for_screen=True, table=times.orders),
         Section(fold="Reach, touches and their order", is_for_screen=True, pictures=pictures),
     ]
 

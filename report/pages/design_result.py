@@ -17,6 +17,7 @@ from matstd.probe_paths.campaign import Campaign
 from matstd.probe_paths.emit import ProgramSet
 from matstd.probe_paths.plan import TouchPlan
 from matstd.probe_paths.stations import Station, all_programs
+from matstd.report.pages.time_section import MachineTimes
 from matstd.sensitivity.study import Study
 from matstd.twin.display import Displayed
 from matstd.twin.frames import Array
@@ -53,6 +54,7 @@ class Design(Displayed):
         effective: Number of parameters that the first machine's data decide rather than the prior.
         budgets: Uncertainty of the user's task on the first machine, by what corrects results.
         visits: What they rest upon.
+        times: Time on the machine of every artefact, and of every order of the touches.
         remarks: What could not be drawn.
         folder: With the files; None before they are in their place.
     """
@@ -70,6 +72,7 @@ class Design(Displayed):
     effective: float
     budgets: Mapping[str, TaskUncertainty]
     visits: Visits
+    times: MachineTimes
     remarks: tuple[str, ...] = ()
     folder: Path | None = None
 

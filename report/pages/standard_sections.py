@@ -72,16 +72,12 @@ def _radius(value: float) -> str:
     return f"{value:.1f}" if value < _FLAT else "flat"
 
 
-def comparison_table(design: Design, on_machine: dict[str, float]) -> Table:
-    """The standard beside other artefacts.
-
-    Args:
-        on_machine: Minutes of every artefact; nan without a body.
-    """
+def comparison_table(design: Design) -> Table:
+    """The standard beside other artefacts."""
     placement, user, volume = design.placement, "in your workspace, µm", "in the probed volume, µm"
     rows = []
     for rival in placement.rivals:
-        time = on_machine[rival.name]
+        time = design.times.minutes[rival.name]
         left = (rival.rms_user, rival.p95_user, rival.rms, rival.p95, rival.rms_random)
         rows.append(
             [

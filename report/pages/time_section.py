@@ -1,13 +1,15 @@
 """Time on the machine in the report of a design: of every artefact, and of every order."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from matstd.artefact.brief import Brief
+from matstd.artefact.place import Placement
 from matstd.probe_paths.campaign import Ordering, orders, probing_time
+from matstd.probe_paths.plan import TouchPlan
 from matstd.report.layout import Table
 from matstd.report.numbers import digits, percent, um
-from matstd.report.pages.design_result import Design
 from matstd.twin.units import HOUR, MINUTE, UM, URAD
 from matstd.twin.words import listed
 
@@ -24,9 +26,27 @@ _CAPTION = (
 )
 
 
-def minutes(design: Design) -> dict[str, float]:
+@dataclass(frozen=True)
+class MachineTimes:
+    """What time on the machine buys."""
+
+    minutes: dict[str, float]  # of every artefact, by name; nan without a body
+    orders: Table  # orders in which the same touches could be made
+    words: str  # cost of the planned order, and time of the touches that prove
+
+
+def machine_times(brief: Brief, placement: Placement, plan: TouchPlan) -> MachineTimes:
+    """Time on the machine of every artefact, and of every order of a plan's touches."""
+    table, words = _order_content(placement, plan, brief.noise)
+    return MachineTimes(
+        minutes=_minutes(brief, placement, plan),
+        orders=table,
+        words=f"{words} {_proof_words(brief, placement, plan)}".rstrip(),
+    )
+
+
+def _minutes(brief: Brief, placement: Placement, plan: TouchPlan) -> dict[str, float]:
     """Minutes on the machine by artefact, by one planner and one clock; nan without a body."""
-    brief, placement = design.brief, design.placement
     found = {}
     for rival in placement.rivals:
         seconds = np.nan
@@ -34,22 +54,21 @@ def minutes(design: Design) -> dict[str, float]:
             seconds = probing_time(
                 rival.body,
                 brief.chain,
-                design.plan.probe,
+                plan.probe,
                 brief.setup,
                 rival.touches,
-                design.plan.options,
+                plan.options,
             )
         found[rival.name] = float(seconds) / MINUTE
     return found
 
 
-def proof_words(design: Design) -> str:
+def _proof_words(brief: Brief, placement: Placement, plan: TouchPlan) -> str:
     """Time of the proving touches in a visit of their own; empty where none can be planned.
 
     They are planned as the programs are, and with each table pose once: half as many motions of
     rotary axes, which then come from one side alone.
     """
-    brief, placement, plan = design.brief, design.placement, design.plan
     once = replace(plan.options, shortest_visit=len(placement.proof) + 1)
     body, chain, setup = placement.standard, brief.chain, brief.setup
     as_planned, quicker = (
@@ -64,11 +83,11 @@ def proof_words(design: Design) -> str:
     )
 
 
-def order_content(design: Design) -> tuple[Table, str]:
+def _order_content(placement: Placement, plan: TouchPlan, noise: float) -> tuple[Table, str]:
     """Orders in which the same touches could be made, and what the planned one costs."""
-    found = orders(design.plan, design.placement.criterion.model, design.brief.noise)
+    found = orders(plan, placement.criterion.model, noise)
     planned, quickest = found[0], min(found, key=lambda order: order.duration)
-    axes = design.plan.chain.rotary_axes
+    axes = plan.chain.rotary_axes
     rows = [
         [
             _ORDERINGS[order.ordering],
@@ -82,7 +101,7 @@ def order_content(design: Design) -> tuple[Table, str]:
     ]
     columns = ("order", "touches", "minutes", "drift, µm/h", "drift over\nthe whole run, µm")
     reversals = [f"reversal of {axis}, µrad" for axis in axes]
-    table = Table((*columns, *reversals), rows, _CAPTION.format(noise=um(design.brief.noise)))
+    table = Table((*columns, *reversals), rows, _CAPTION.format(noise=um(noise)))
     better = [
         f"the reversal of {axis} by a factor of {there / here:.1f}"
         for axis, here, there in zip(axes, planned.reversal, quickest.reversal, strict=True)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from matstd.artefact.compare import comparison
-from matstd.artefact.compare.comparison import Rival, compare
+from matstd.artefact.compare.comparison import Rival, compared
 from matstd.artefact.layout.blank import Blank
 from matstd.artefact.reach.touchable import Requests
 from matstd.artefact.worth import Criterion, TouchOptions, Visibility
@@ -18,7 +18,9 @@ POSES = np.array([[a * DEG] for a in (-120.0, -40.0, 40.0, 120.0)])
 
 def rivals_of(criterion: Criterion) -> tuple[Rival, ...]:
     rng, options = np.random.default_rng(1), TouchOptions(touches=40, poses=3, proof=8)
-    return compare(criterion, None, POSES, Blank(), options, Visibility(()), rng)[0]
+    given = criterion, None, POSES, Blank(), options, Visibility(()), rng
+    with compared(*given) as others:
+        return others.all()
 
 
 def test_the_same_artefacts_in_the_same_order_to_the_last_bit(

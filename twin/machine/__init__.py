@@ -16,6 +16,7 @@ from matstd.twin.machine.kinematics import (
     reach,
     table_to_tool,
     tip,
+    tool_and_directions,
 )
 from matstd.twin.machine.link import Link
 from matstd.twin.machine.ranges import (
@@ -33,5 +34,5 @@ __all__ = [
     "DEFAULT_RANGES", "LETTERS", "SHAPES", "Axis", "Chain", "Contribution", "Family", "Link",
     "Ranges", "Reach", "ShapeName", "Symbol", "Where", "checked_readings", "error_class",
     "exact_tip", "inverse_linear", "linear_directions", "make_chain", "parse_symbol", "reach",
-    "shape", "sine_argument", "table_to_tool", "tip",
+    "shape", "sine_argument", "table_to_tool", "tip", "tool_and_directions",
 ]  # fmt: skip

@@ -193,12 +193,23 @@ def exact_tip(chain: Chain, q: Array, length: Array | float, contribution: Contr
 def linear_directions(chain: Chain, q: Array) -> Array:
     """Motion of the tip in the table frame per unit of each linear axis of the chain, (N, 3, M)."""
     T_machine_carrier, T_machine_table, _ = carriers(chain, q)
+    return _directions(chain, T_machine_carrier, T_machine_table)
+
+
+def tool_and_directions(chain: Chain, q: Array) -> tuple[Array, Array]:
+    """`table_to_tool` and `linear_directions` together, in half of their time."""
+    T_machine_carrier, T_machine_table, T_machine_tool = carriers(chain, q)
+    along = _directions(chain, T_machine_carrier, T_machine_table)
+    return inverse(T_machine_table) @ T_machine_tool, along
+
+
+def _directions(chain: Chain, T_machine_carrier: Array, T_machine_table: Array) -> Array:
     columns = []
     for name in chain.linear_axes:
         i = chain.link_index(name)
         in_machine = T_machine_carrier[:, i, :3, :3] @ chain.links[i].direction
         columns.append(np.einsum("nji,nj->ni", T_machine_table[:, :3, :3], in_machine))
-    return np.stack(columns, axis=-1) if columns else np.zeros((len(q), 3, 0))
+    return np.stack(columns, axis=-1) if columns else np.zeros((len(T_machine_table), 3, 0))
 
 
 def inverse_linear(chain: Chain, target: Array, q: Array, length: Array | float) -> Array:
