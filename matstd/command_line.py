@@ -3,6 +3,7 @@
 import argparse
 import re
 import sys
+from collections.abc import Sequence
 from typing import NoReturn
 
 from matstd.twin.words import did_you_mean
@@ -22,6 +23,13 @@ _OURS = {
 class CommandLine(argparse.ArgumentParser):
     """A parser whose refusals are one line, with what may be meant."""
 
+    given: Sequence[str] = ()  # the words of this call
+
+    def parse_known_args(self, args=None, namespace=None):  # type: ignore[no-untyped-def,override]
+        """As in argparse, which looks for missing options before it knows the unknown ones."""
+        self.given = list(args or ())
+        return super().parse_known_args(args, namespace)
+
     def error(self, message: str) -> NoReturn:
         """Refuse, exit code 2."""
         print(f"{self.prog}: {self._words(message)} ({self.prog} --help)", file=sys.stderr)
@@ -30,7 +38,10 @@ class CommandLine(argparse.ArgumentParser):
     def _words(self, message: str) -> str:
         name, _, reason = message.partition(": ")
         if name == "the following arguments are required":
-            return f"found no {reason}"
+            options = [o for action in self._actions for o in action.option_strings]
+            words = [w.partition("=")[0] for w in self.given if w.startswith("--")]
+            mistyped = [w for w in words if not any(o.startswith(w) for o in options)]
+            return self._unknown(mistyped[0]) if mistyped else f"found no {reason}"
         if name == "unrecognized arguments":
             return self._unknown(reason.partition(" ")[0].partition("=")[0])
         of = name.removeprefix("argument ")

@@ -3,6 +3,8 @@
 `benchmarks/fuzz_readers.py` does the same thousands of times.
 """
 
+import re
+
 import numpy as np
 import pytest
 from border_cases import border_readers
@@ -11,7 +13,10 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from reader_cases import NUMBERS, damage, golden, machine_said, poses_said, readers, run_said
 
-from matstd.twin.errors import DesignError
+from matstd.twin.errors import BadFile, DesignError
+from matstd.twin.files import read_text
+from matstd.twin.files.toml import parse_toml
+from matstd.twin.machine.notation import parse_notation
 
 EACH = 60
 """Inputs of a reader: a few seconds in all."""
@@ -123,3 +128,30 @@ def test_the_naive_reading_notices_a_wrong_number(cases) -> None:
     reader.path.write_text(text, encoding="utf-8")
     assert not mapped_said(text.replace("-0.4", "-0.41"), reader.read(reader.path))
     assert len(set(NUMBERS)) == len(NUMBERS)
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [("rum.csv", "no such file; did you mean run.csv?"), ("x/run.csv", "the folder")],
+)
+def test_a_file_that_is_missing_is_looked_for_beside_its_name(name, said, tmp_path) -> None:
+    (tmp_path / "run.csv").write_text("", encoding="utf-8")
+    with pytest.raises(BadFile, match=said.replace("?", r"\?")):
+        read_text(tmp_path / name)
+
+
+def test_primes_of_a_word_processor_are_primes() -> None:
+    plain = parse_notation("[w C' B' X' f Y Z (C1) t]")
+    assert parse_notation("[w C’ B′ X´ f Y Z (C1) t]") == plain
+
+
+@pytest.mark.parametrize(
+    ("line", "expected"),
+    [
+        ('machine = "C:\\Users\\machine.toml"', "two backslashes for one"),
+        ("[probe   # of the spindle", "a ] behind the name of a table"),
+    ],
+)
+def test_a_line_that_is_no_toml_says_what_is_missing(line, expected) -> None:
+    with pytest.raises(BadFile, match=re.escape(expected)):
+        parse_toml(f"{line}\n", "project.toml")

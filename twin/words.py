@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
+from pathlib import Path
 
 LENGTHS = "µm"
 _UNIT: ContextVar[str] = ContextVar("unit of deviations", default=LENGTHS)
@@ -48,6 +49,17 @@ def nearest(word: str, known: Iterable[str]) -> str:
     by_letters = {name.lower(): name for name in known}
     near = get_close_matches(word.lower(), by_letters, n=1, cutoff=0.7)
     return by_letters[near[0]] if near else ""
+
+
+def not_read(path: Path, error: OSError) -> str:
+    """Why a file cannot be read, with the file beside it that may be meant."""
+    if not isinstance(error, FileNotFoundError):
+        return error.strerror or str(error)
+    try:
+        beside = [entry.name for entry in path.parent.iterdir()]
+    except OSError:
+        return f"no such file; the folder {path.parent} is missing too"
+    return f"no such file{did_you_mean(path.name, beside)}"
 
 
 def listed(names: list[str], last: str = "and") -> str:

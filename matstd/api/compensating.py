@@ -55,6 +55,7 @@ from matstd.twin.frames import Array
 from matstd.twin.machine import Chain
 from matstd.twin.model import is_saved
 from matstd.twin.record import Touches
+from matstd.twin.units import TOOL_LENGTH, in_another_unit
 
 SOMETIMES = (
     "*/*",
@@ -92,6 +93,7 @@ class Shares:
             save(draw_shares_along(self.touches.time, self.whole, self.each), place / names[1])
 
 
+LONGEST_TOOL = 1e4  # mm
 PROBING = re.compile(r"\bSTANDARD (\S+) SETUP \S+")
 """Stands in the head of every probing program: the standard that it was written for."""
 
@@ -302,6 +304,7 @@ def compensate(
         'X0 Z0 Y0 L100'
     """
     register_effects()
+    checked_length(tool_length)
     name = str(model) if isinstance(model, str | Path) else "the model"
     state = state or State()
     with drives_stated(name):
@@ -337,6 +340,20 @@ def _controls(argument: str, names: Iterable[str]) -> list[str]:
         if name not in FORMATS:
             raise BadArgument(argument, name, f"one of {', '.join(FORMATS)}")
     return list(dict.fromkeys(names))
+
+
+def checked_length(tool_length: float) -> None:
+    """Refuse the length of a tool that no spindle holds, or that is in metres.
+
+    Raises:
+        BadArgument: Beyond 0 to 10 000 mm, or a usual length if read in metres or µm.
+    """
+    if not 0.0 <= tool_length < LONGEST_TOOL:
+        raise BadArgument("tool_length", f"{tool_length:g}", "a length from 0 to 10 000 mm")
+    slip = in_another_unit([tool_length], "mm", TOOL_LENGTH)
+    if slip is not None:
+        meant = f"mm; is it in {slip[0]}, {slip[1] * tool_length:g} mm?"
+        raise BadArgument("tool_length", f"{tool_length:g}", meant)
 
 
 def within_travel(chain: Chain, argument: str, readings: Mapping[str, float]) -> dict[str, float]:

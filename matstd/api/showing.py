@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from matstd.api.compensating import PROBING, ProgramOptions, within_travel
+from matstd.api.compensating import PROBING, ProgramOptions, checked_length, within_travel
 from matstd.api.known_errors import drives_stated, machine_errors, with_added, with_unknowns
 from matstd.api.machines import chain_of
 from matstd.api.standards import standard_of
@@ -138,8 +138,7 @@ def show(
     """
     register_effects()
     chain = chain_of(machine)
-    if not 0.0 <= tool_length < 1e4:
-        raise BadArgument("tool_length", f"{tool_length:g}", "a length from 0 to 10 000 mm")
+    checked_length(tool_length)
     progress("errors", 0, 1)
     known, source, remarks = _known(chain, errors, model, add, state or State())
     preset = datum_of(chain, within_travel(chain, "datum", datum or {}), tool_length)

@@ -35,6 +35,7 @@ from matstd.probe_paths.language import (
 from matstd.probe_paths.plan import Heading, Probe, ProgramFrame
 from matstd.twin.errors import BadFile
 from matstd.twin.machine import Chain
+from matstd.twin.words import not_read
 
 _BEYOND = 1.05  # multiple of its limit by which a value is off when the program has to stop
 
@@ -84,7 +85,7 @@ def _content(path: Path) -> bytes:
     try:
         return path.read_bytes()
     except OSError as error:
-        raise BadFile(path, "file", error.strerror or "nothing", "a program file") from error
+        raise BadFile(path, "file", not_read(path, error), "a program file") from error
 
 
 def interpret(

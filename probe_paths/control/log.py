@@ -21,8 +21,10 @@ from matstd.twin.errors import BadFile
 from matstd.twin.frames import Array
 from matstd.twin.record import IntArray
 from matstd.twin.units import DAY
+from matstd.twin.words import not_read
 
 LARGEST_COORDINATE = 1e6
+
 """A coordinate (mm, degrees) or a number of a touch beyond this was not logged by our programs."""
 
 _PAIR = re.compile(r"([A-Z]+)\s*([-+]?\d+(?:\.\d+)?)(?=\s|\Z)")
@@ -125,7 +127,7 @@ def _lines(path: Path, text: str | None) -> list[Line]:
         try:
             data = path.read_bytes()
         except OSError as error:
-            raise BadFile(path, "file", error.strerror or "nothing", "a log") from None
+            raise BadFile(path, "file", not_read(path, error), "a log") from None
         # an editor may have changed the encoding; a non-ASCII character corrupts its line only
         encoding = "utf-16" if data[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig"
         text = data.decode(encoding, errors="replace")

@@ -7,9 +7,10 @@ from typing import Any
 import pytest
 import tomli_w
 
+from matstd.api.compensating import compensate
 from matstd.artefact.brief import read_project
-from matstd.twin.errors import BadFile
-from matstd.twin.files import read_machine
+from matstd.twin.errors import BadArgument, BadFile
+from matstd.twin.files import read_machine, read_poses
 
 ROOT = Path(__file__).parents[2]
 EXAMPLE, MACHINE = ROOT / "examples/hsm600u.toml", ROOT / "examples/hsm600u-machine.toml"
@@ -153,3 +154,15 @@ def test_lengths_of_an_axis_in_another_unit_are_refused(key, value, tmp_path) ->
     copy.write_text(tomli_w.dumps(machine), encoding="utf-8")
     with pytest.raises(BadFile, match=rf"axis\.X\.{key}.*is it in"):
         read_machine(copy)
+
+
+def test_a_tool_in_metres_is_refused(tmp_path) -> None:
+    poses = tmp_path / "poses.csv"
+    head = "X_mm,Y_mm,Z_mm,B_deg,C_deg,tool_length_mm\n"
+    poses.write_text(head + "0,0,-100,0,0,0\n0,0,-100,0,0,0.16\n", encoding="utf-8")
+    with pytest.raises(BadFile, match=r"line 3, column tool_length_mm.*is it in metres"):
+        read_poses(poses, read_machine(MACHINE))
+    poses.write_text(head + "0,0,-100,0,0,12\n", encoding="utf-8")
+    assert len(read_poses(poses, read_machine(MACHINE))[1]) == 1
+    with pytest.raises(BadArgument, match="is it in metres, 160 mm"):
+        compensate(MACHINE, tool_length=0.16)

@@ -11,6 +11,7 @@ REFUSED = {
     "design a.toml b.toml -o out": "matstd design: b.toml: found one word too many",
     f"{SIMULATE} --noise-um hot": "simulate: --noise-um: found 'hot', expected a number",
     f"{SIMULATE} --seed 1.5": "simulate: --seed: found '1.5', expected a whole number",
+    "diagnose run.csv --ouput x": "--ouput: found an unknown option; did you mean --output?",
     f"{SIMULATE} --nois-mu=3 --foo": "--nois-mu: found an unknown option; did you mean --noise-um?",
     f"{SIMULATE} --noise-um": "--noise-um: found nothing behind it",
     f"{SIMULATE} --errors e.toml --random-errors": "found beside --errors, expected one of the two",

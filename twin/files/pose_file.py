@@ -12,6 +12,7 @@ from matstd.twin.files.toml import read_text
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain
 from matstd.twin.record import IntArray
+from matstd.twin.units import TOOL_LENGTH, in_another_unit
 
 FARTHEST = 1e5
 """A length (mm) or an angle (degrees) beyond this is a slip, not a reading or a place."""
@@ -76,4 +77,10 @@ def read_poses(path: str | Path, chain: Chain) -> tuple[Array, Array]:
         raise table.bad(int(beyond.rows[0]), beyond.column, beyond.found, beyond.expected)
     if "tool_length_mm" not in table:
         return q, np.zeros(len(table))
-    return q, table.numbers("tool_length_mm", largest=FARTHEST, smallest=0.0)
+    lengths = table.numbers("tool_length_mm", largest=FARTHEST, smallest=0.0)
+    slip = in_another_unit([float(lengths.max())], "mm", TOOL_LENGTH)
+    if slip is not None:
+        longest = int(lengths.argmax())
+        found, expected = f"{lengths[longest]:g}", f"mm; is it in {slip[0]}?"
+        raise table.bad(longest, "tool_length_mm", found, expected)
+    return q, lengths

@@ -27,7 +27,7 @@ _BYTES_A_BLOCK = 1 << 15
 """Bytes that are converted at once: more of them leave the cache (2^20: 1.5 times as long)."""
 _PLAIN = b"0123456789+-.eE, \t\n"
 _OTHERS = {"semicolons": ";", "tabs": "\t"}
-_EXPECTED = "a cell a column, commas between them, and a point in decimal numbers"
+_EXPECTED = "one cell for every column, commas between them, a point in decimal numbers"
 
 
 def _rows(table: io.BytesIO, path: str | Path, first: int) -> Iterator[tuple[int, list[str]]]:

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from matstd.twin.errors import BadFile
+from matstd.twin.words import not_read
 
 _NO_TEXT = {
     b"PK\x03\x04": "a zip archive, such as a workbook of Excel (save it as CSV)",
@@ -31,6 +32,8 @@ _GRAMMAR = {
     "Invalid date": "a date such as 2031-05-06",
     "Unescaped": "two backslashes for one in a text, or a text in single quotes",
     "Escaped": "two backslashes for one in a text, or a text in single quotes",
+    "Invalid hex": "two backslashes for one in a text, or a text in single quotes",
+    "Expected ']": "a ] behind the name of a table",
     "Unterminated": "a quotation mark at the end of a text",
     "Illegal character": "a quotation mark at the end of a text, and no control characters",
 }
@@ -60,9 +63,11 @@ def _bytes(path: str | Path) -> bytes:
         return Path(path).read_bytes()
     except IsADirectoryError as error:
         raise BadFile(path, "file", "a folder", "a file") from error
-    except (OSError, ValueError) as error:  # ValueError: a name with a zero byte
-        found = getattr(error, "strerror", None) or str(error)
+    except OSError as error:
+        found = not_read(Path(path), error)
         raise BadFile(path, "file", found, "a file that can be read") from error
+    except ValueError as error:  # a name with a zero byte
+        raise BadFile(path, "file", str(error), "a file that can be read") from error
 
 
 def read_text(path: str | Path) -> str:

@@ -16,6 +16,8 @@ def parse_notation(notation: str) -> list[tuple[str, bool, bool]]:
     Reference:
         ISO 841; chain notation as in ISO 10791-6, with primes as in `[w C' B' X' f Y Z (C1) t]`.
     """
+    # a word processor makes other primes of those that are typed
+    notation = re.sub("[\u2019\u2018\u2032\u00b4`]", "'", notation)
     tokens = notation.strip().removeprefix("[").removesuffix("]").split()
     if len(tokens) < 3 or tokens[0] != "w" or tokens[-1] != "t" or tokens.count("f") != 1:
         expected = "one 'w' first, one 't' last and one 'f' between, such as [w X' f Y Z t]"

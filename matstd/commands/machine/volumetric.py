@@ -27,6 +27,7 @@ def run(args: argparse.Namespace) -> int:
         found = volumetric(chain, args.errors, args.poses, show)
         found.save(args.output, show)
     size = found.size / UM
-    print(f"{args.output}: {len(size)} poses, mean {size.mean():.3f} µm, worst {size.max():.3f} µm")
+    count = f"{len(size)} poses" if len(size) > 1 else "1 pose"
+    print(f"{args.output}: {count}, mean {size.mean():.3f} µm, worst {size.max():.3f} µm")
     say_assumed(chain)
     return 0
