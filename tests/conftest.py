@@ -64,9 +64,16 @@ LONGEST = (
 left to itself, xdist begins with the files of most tests."""
 
 
-TOGETHER = "tests/cad_out/"
-"""A folder whose files one worker has: the kernel takes two seconds to load, the standard that they
-share (`built`) eight to build."""
+TOGETHER = (
+    ("tests/cad_out/",),  # the kernel takes two seconds to load, `built` eight to build
+    (  # `warm`
+        "tests/report/test_live_page.py",
+        "tests/report/test_diagnosis_pictures.py",
+        "tests/diagnosis/test_reduced.py",
+    ),
+    ("tests/diagnosis/test_laws.py", "tests/report/test_live_laws.py"),  # `stylus`
+)
+"""Folders and files that one worker has, because they share what takes seconds to make."""
 
 
 def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
@@ -76,7 +83,7 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
     class TogetherScheduling(LoadFileScheduling):
         def _split_scope(self, nodeid: str) -> str:
             file: str = super()._split_scope(nodeid)
-            return TOGETHER if file.startswith(TOGETHER) else file
+            return next((group[0] for group in TOGETHER if file.startswith(group)), file)
 
     return TogetherScheduling(config, log)
 

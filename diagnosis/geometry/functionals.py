@@ -116,9 +116,10 @@ def _curves(fit: Fit, poses: Touches, link: Link) -> dict[int, Array]:
 def _displacements(fit: Fit, poses: Touches) -> Array:
     """Displacement of the tool relative to the table per unit of every parameter, (N, 3, P)."""
     out = np.zeros((len(poses), 3, len(fit.model.parameters)))
-    for start, effect in effects_of_readings(fit):
-        part = slice(start, start + len(effect.parameters))
-        out[:, :, part] = Model(poses.chain, (effect,)).relative_columns(poses)
+    known = list(effects_of_readings(fit))
+    places = [start + k for start, effect in known for k in range(len(effect.parameters))]
+    model = Model(poses.chain, tuple(effect for _, effect in known))
+    out[:, :, places] = model.relative_columns(poses)
     return out
 
 

@@ -118,6 +118,8 @@ def geometry_rows(fit: Fit, before: Prior | None = None) -> tuple[GeometryRow, .
 def changed_runs(fit: Fit) -> tuple[int, ...]:
     """Runs in which a quantity differs by more than chance from a run since the last change."""
     fitted = [int(i) for i in np.unique(fit.run.touches.run[fit.used])]
+    if len(fitted) < 2:
+        return ()
     states = {i: state(fit.model, i) for i in fitted}
     prior = fit.prior.root[: len(fit.model.parameters), : len(fit.model.parameters)]
     quantities = list(functionals(fit, np.mean([L @ _machine(fit) for L in states.values()], 0)))

@@ -139,39 +139,41 @@ class _Constant:
     def gains(self, rows: BoolArray, variable: Bounded) -> Array:
         """As of `Measure`."""
         space = self.space
-        beside, whole, along = self._sums(rows, variable)
-        # sums over the square of bins i to k, from a table of sums
-        own = square_sums(whole - beside @ beside.T)
+        own, whole, along = self._sums(rows, variable)
         enough = summed(np.bincount(variable.bins[space.used & rows], minlength=variable.size))
         sound = (
             (enough >= MIN_TOUCHES_OF_REGION)
             & (enough <= MAX_SHARE * len(space.u))
-            & (own > MIN_OWN * square_sums(whole))
+            & (own > MIN_OWN * whole)
         )
         sound &= variable.is_offered
-        drop = np.where(sound, summed(along) ** 2 / np.where(sound, own, 1.0), 0.0)
+        drop = np.where(sound, along**2 / np.where(sound, own, 1.0), 0.0)
         return _gain(space, drop) if self.drawing is None else 0.5 * drop
 
     def _sums(self, rows: BoolArray, variable: Bounded) -> tuple[Array, Array, Array]:
-        """Products of the column in each bin with the model (B, P), with itself, with the drawing.
+        """The column in bins i to k: its square beside the model, its square, and its drawing.
 
-        In white noise a touch counts in its own bin alone: sums of rows, and no product of matrices
-        with a column a bin, which is most of the time of a search.
+        Arrays (B, B). In white noise a touch counts in its own bin alone: sums of rows, and no
+        product of matrices with a column a bin, which was a quarter of the time of a search.
         """
         space, size = self.space, variable.size
         if space.whitener is not None:
             bins = variable.bins[:, None] == np.arange(size)
             C = _white(space, (rows * self.column)[:, None] * bins)
-            return C.T @ space.Q[: len(C)], C.T @ C, C.T @ self._drawn[: len(C)]
+            beside, G = C.T @ space.Q[: len(C)], C.T @ C
+            along = C.T @ self._drawn[: len(C)]
+            return square_sums(G - beside @ beside.T), square_sums(G), summed(along)
         inside = np.flatnonzero(rows[space.used])
         bins = variable.bins[space.used][inside]
         order = np.argsort(bins, kind="stable")
         inside, bins = inside[order], bins[order]
-        first = np.flatnonzero(np.diff(bins, prepend=-1))
+        first = np.flatnonzero(np.concatenate([[True], bins[1:] != bins[:-1]])[: len(bins)])
         sums = np.zeros((size, self._products.shape[1]))
         if len(first):
             sums[bins[first]] = np.add.reduceat(self._products[inside], first, axis=0)
-        return sums[:, 2:], np.diag(sums[:, 0]), sums[:, 1]
+        whole, along, beside = sums[:, 0], sums[:, 1], sums[:, 2:]
+        own = square_sums(np.diag(whole) - beside @ beside.T)
+        return own, summed(whole), summed(along)
 
     @property
     def _drawn(self) -> Array:

@@ -190,7 +190,7 @@ def test_a_jump_is_found_where_it_was_planted(jumped, tmp_path, capsys):
 
 
 def test_nothing_is_found_where_nothing_changed(tmp_path, capsys):
-    folder = written(tmp_path, [{}] * 6, seed=12)
+    folder = written(tmp_path, [{}] * 4, seed=12)
     assert main(["trend", str(folder), "--no-report", "-o", str(tmp_path / "out")]) == 0
     assert "none of " in capsys.readouterr().out
     found = json.loads((tmp_path / "out" / "trend.json").read_text("utf-8"))

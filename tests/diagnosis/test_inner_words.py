@@ -38,7 +38,7 @@ def test_a_span_of_time_is_reported_in_minutes_whatever_its_name() -> None:
 
 def test_the_same_lag_by_another_word_gives_the_same_answer(case) -> None:
     """EXC after switching on, hidden by the simulator: size, time constant, uncertainties alike."""
-    run = case(*HIDDEN).run[::3]
+    run = case(*HIDDEN).run[::6]
     lag = parse_effect("thermal-lag(EXC)", run.touches.chain)
     reported = {}
     for effect in (lag, Settling(lag.symbol, lag.drive)):

@@ -47,14 +47,6 @@ from matstd.twin.model import Model, columns
 from matstd.twin.units import UM
 
 
-@pytest.fixture(scope="module")
-def stylus():
-    """A stylus that is changed: the probe reads elsewhere from then on."""
-    texts = law_case(np.random.default_rng(5), "hmc1995", "stylus", (30.0, 31.0), poses=4)
-    runs = [read_back(text, MACHINES["hmc1995"]) for text in texts[:3]]
-    return texts, runs, learn_laws(runs[0])
-
-
 def test_a_law_is_found_with_its_carrier_variable_and_shape(stylus) -> None:
     (*_, truth), _, found = stylus
     (one,) = found.laws

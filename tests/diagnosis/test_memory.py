@@ -17,6 +17,7 @@ from matstd.diagnosis.remarks.run_remarks import remarks
 from matstd.report.words.remark_words import remark_sentence
 from matstd.report.words.verdict_words import verdict_sentence
 from matstd.twin.effects.setup_error import setup_errors
+from matstd.twin.library.catalogue import proposals
 from matstd.twin.library.ordinary import ordinary_model
 from matstd.twin.model.model import columns
 from matstd.twin.units import UM
@@ -188,7 +189,8 @@ def test_rows_that_count_for_less_widen_what_is_reported(noisy) -> None:
 
 
 def test_noise_that_remembers_is_said_to_and_nothing_is_named(noisy, tmp_path) -> None:
-    result = diagnose(noisy)
+    few = proposals(noisy.touches, ("backlash", "thermal-lag", "drift"))
+    result = diagnose(noisy, candidates=few)
     assert result.verdict is Verdict.NONE
     assert result.found == ()
     memory = result.fit.memory

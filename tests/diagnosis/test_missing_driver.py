@@ -15,7 +15,7 @@ from matstd.diagnosis.answer.reported_set import ReportedSet
 from matstd.diagnosis.evidence import ScaledEffect
 from matstd.diagnosis.residual import Shape
 from matstd.diagnosis.search import follows_driver, unrecorded
-from matstd.twin.library import parse_effect
+from matstd.twin.library import parse_effect, proposals
 from matstd.twin.model import columns
 from matstd.twin.record import Run
 
@@ -37,7 +37,8 @@ def without_sensor(run: Run, name: str) -> Run:
 
 
 def test_a_recorded_driver_is_named(growing: Run) -> None:
-    found = diagnose(growing)
+    few = proposals(growing.touches, ("artefact-expansion", "thermal-expansion", "thermal-lag"))
+    found = diagnose(growing, candidates=few)
     assert [e.name for e in found.found] == ["artefact-expansion(artefact)"]
     assert found.parts.named[0].against_drift is not None
     assert found.parts.named[0].against_drift > 0.0

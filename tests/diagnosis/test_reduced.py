@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from matstd.diagnosis.answer.comparison import compare
-from matstd.diagnosis.answer.run_diagnosis import diagnose
 from matstd.diagnosis.fit.identification import fit_run
 from matstd.diagnosis.fit.prior import Prior
 from matstd.diagnosis.reduced.base import Base
@@ -117,34 +116,29 @@ def test_residuals_are_those_of_the_fit(run):
     assert residual == pytest.approx(fit.residual, abs=1e-9)
 
 
-@pytest.fixture(scope="module")
-def diagnosis(run):
-    return diagnose(run, candidates=offered(run))
-
-
-def test_the_board_has_the_figures_of_every_step(diagnosis):
-    board = diagnosed_board(diagnosis)
-    assert {e.name for e in diagnosis.found} == board.found
+def test_the_board_has_the_figures_of_every_step(warm):
+    board = diagnosed_board(warm)
+    assert {e.name for e in warm.found} == board.found
     on = set()
-    for step in diagnosis.steps:
+    for step in warm.steps:
         on |= {step.effect.name} if step.effect else set()
         assert board.errors(on).fitted == pytest.approx(step.fit.rms, rel=1e-6)
         assert board.errors(on).held_out == pytest.approx(step.fit.test_rms, rel=1e-6)
         assert board.known[frozenset(on)] == (step.fit.rms, step.fit.test_rms)
     # look-alikes and others stand behind what was found, each once
     names = [s.effect.name for s in board.switches]
-    assert len(names) == len(set(names)) > len(diagnosis.found)
-    rivals = {r.effect.name for r in diagnosis.steps[1].confusion.rivals}
+    assert len(names) == len(set(names)) > len(warm.found)
+    rivals = {r.effect.name for r in warm.steps[1].confusion.rivals}
     assert set(board.switches[0].alike) <= rivals
-    last = board.residuals(diagnosis.fit.noise.factor)[:, -1]
-    assert last == pytest.approx(diagnosis.fit.residual, abs=1e-6)
+    last = board.residuals(warm.fit.noise.factor)[:, -1]
+    assert last == pytest.approx(warm.fit.residual, abs=1e-6)
 
 
-def test_columns_follow_the_inner_parameter(diagnosis):
+def test_columns_follow_the_inner_parameter(warm):
     """At values of the slider and between them, against columns of the effect itself."""
-    board = diagnosed_board(diagnosis)
+    board = diagnosed_board(warm)
     one = next(s for s in board.switches if s.inner is not None)
-    x, run = np.log(one.values), diagnosis.run
+    x, run = np.log(one.values), warm.run
     change = columns([one.effect], run.touches) * one.sd / run.u[:, None]
     size = np.linalg.norm(change)
     assert one.values[one.present] == pytest.approx(next(iter(one.effect.tuning.values())))
@@ -155,7 +149,7 @@ def test_columns_follow_the_inner_parameter(diagnosis):
         mixed = np.einsum("v,vkm->km", weights, one.mixes[nearest])
         moved = columns([one.effect.tuned(float(np.exp(at)))], run.touches) * one.sd
         seen = board.base.freed(
-            (one.columns @ mixed.T - moved / run.u[:, None])[diagnosis.fit.used], 1.0
+            (one.columns @ mixed.T - moved / run.u[:, None])[warm.fit.used], 1.0
         )
         assert np.linalg.norm(seen) < 0.01 * size
 

@@ -4,7 +4,7 @@ import numpy as np
 from made_up import ARM, arm_poses
 
 from matstd.diagnosis.answer.run_diagnosis import diagnose
-from matstd.twin.library.catalogue import parse_effect
+from matstd.twin.library.catalogue import parse_effect, proposals
 from matstd.twin.library.ordinary import ordinary_model
 from matstd.twin.model.model import Model
 from matstd.twin.record.run import Run
@@ -36,4 +36,5 @@ def test_joints_that_sag_are_found_and_none_beside_them() -> None:
 
 
 def test_a_stiff_arm_has_no_joints_that_sag() -> None:
-    assert not diagnose(run_of({})).found
+    run = run_of({})
+    assert not diagnose(run, candidates=proposals(run.touches, ("joint-sag", "drift"))).found

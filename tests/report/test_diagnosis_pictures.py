@@ -36,14 +36,6 @@ ANY_ADDRESS = re.compile(r"(?:https?:)?//[\w.]+")
 
 
 @pytest.fixture(scope="module")
-def warm(case):
-    """A run with chips that hides a lag along Z, diagnosed among a few candidates."""
-    run = case(31, "hsm600u", ("thermal-lag(EZZ)",), True, (30.0, 35.0)).run
-    candidates = [e for kind in (LAG, BACKLASH) for e in kind.propose(run.touches)]
-    return diagnose(run, candidates=candidates, rng=np.random.default_rng(0))
-
-
-@pytest.fixture(scope="module")
 def strange(case):
     """A run that hides what no library has, diagnosed among a few candidates."""
     run = case(32, "hsm600u", ("?cable",), False, (30.0, 35.0)).run[::2]

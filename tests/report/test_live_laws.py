@@ -6,16 +6,13 @@ from dataclasses import fields, replace
 import numpy as np
 import pytest
 from browser import faults, opened, page_data, requests, run
-from simulator_case import read_back
-from simulator_experiment import MACHINES
-from simulator_laws import law_case
 
 from matstd.api.diagnosing import Diagnosis as SavedDiagnosis
 from matstd.diagnosis.answer.comparison import compare
 from matstd.diagnosis.answer.run_diagnosis import diagnose
 from matstd.diagnosis.fit.identification import fit_run
 from matstd.diagnosis.fit.prior import Prior
-from matstd.diagnosis.laws import amplitudes, learn_laws, learn_remainder
+from matstd.diagnosis.laws import amplitudes, learn_remainder
 from matstd.diagnosis.reduced import compared_board, learnt_board
 from matstd.report.laws import law_curve
 from matstd.report.layout import Page, write_page
@@ -27,10 +24,9 @@ LAW = "law(bias,step time)"
 
 
 @pytest.fixture(scope="module")
-def learning():
+def learning(stylus):
     """A stylus that is changed: the probe reads elsewhere from then on."""
-    text, *_ = law_case(np.random.default_rng(5), "hmc1995", "stylus", (30.0, 31.0), poses=4)
-    return learn_laws(read_back(text, MACHINES["hmc1995"]))
+    return stylus[2]
 
 
 def test_the_board_switches_the_law(learning):

@@ -11,7 +11,6 @@ import pytest
 from browser import faults, numbers_of, opened, requests, run
 
 from matstd.diagnosis.answer.comparison import compare
-from matstd.diagnosis.answer.run_diagnosis import diagnose
 from matstd.diagnosis.choice import candidate_effects
 from matstd.diagnosis.files.diagnosis_file import diagnosis_table
 from matstd.diagnosis.fit.identification import fit_run
@@ -22,11 +21,9 @@ from matstd.report.layout import Page, write_page
 from matstd.report.run_view import Findings, Framed, diagnosis_view, run_view
 from matstd.report.run_view.run_data import run_data
 from matstd.report.run_view.touched_bodies import touched_bodies
-from matstd.twin.effects.backlash import KIND as BACKLASH
 from matstd.twin.library.ordinary import ordinary_model
 from matstd.twin.model.model import Model
 from matstd.twin.numbers import significant
-from matstd.twin.thermal.thermal_lag import KIND as LAG
 from matstd.twin.units import UM
 
 pytestmark = pytest.mark.browser
@@ -44,14 +41,6 @@ ONLY = """for (const s of livePage.board.switches) s.isOn = NAMES.includes(s.nam
     return [fitted, heldOut];"""
 
 
-@pytest.fixture(scope="module")
-def diagnosis(case):
-    """A run with chips that hides a lag along Z, diagnosed among a few candidates."""
-    known = case(31, "hsm600u", ("thermal-lag(EZZ)",), True, (30.0, 35.0)).run
-    candidates = [e for kind in (LAG, BACKLASH) for e in kind.propose(known.touches)]
-    return diagnose(known, candidates=candidates)
-
-
 def written(path, view):
     """A page of nothing but a view."""
     write_page(path, Page(title="t", heading="h", lead="l", key=(), sections=(), live=view))
@@ -59,9 +48,9 @@ def written(path, view):
 
 
 @pytest.fixture(scope="module")
-def page(diagnosis, tmp_path_factory):
+def page(warm, tmp_path_factory):
     path = tmp_path_factory.mktemp("live") / "report.html"
-    return written(path, diagnosis_view(diagnosis, "run.csv"))
+    return written(path, diagnosis_view(warm, "run.csv"))
 
 
 @pytest.fixture
@@ -73,8 +62,8 @@ def live(browser, page):
     assert requests(browser) == []
 
 
-def test_switching_the_found_effect_moves_the_error_between_the_steps_of_the_file(live, diagnosis):
-    first, last = diagnosis_table(diagnosis)["steps"]
+def test_switching_the_found_effect_moves_the_error_between_the_steps_of_the_file(live, warm):
+    first, last = diagnosis_table(warm)["steps"]
     name = last["effect"]
 
     def is_as(step):
@@ -92,8 +81,8 @@ def test_switching_the_found_effect_moves_the_error_between_the_steps_of_the_fil
     assert f"{last['parameters']['amplitude_um']:.2f}" in words
 
 
-def test_sets_of_switches_are_as_fits_to_the_touches(live, diagnosis):
-    board, rng = diagnosed_board(diagnosis), np.random.default_rng(1)
+def test_sets_of_switches_are_as_fits_to_the_touches(live, warm):
+    board, rng = diagnosed_board(warm), np.random.default_rng(1)
     fit, names = board.fit, [s.effect.name for s in board.switches]
     base = [e for e in fit.model.effects if e.name not in board.found]
     count = sum(len(e.parameters) for e in base)
@@ -110,12 +99,12 @@ def test_sets_of_switches_are_as_fits_to_the_touches(live, diagnosis):
         assert figures == pytest.approx([known.rms / UM, known.test_rms / UM], rel=SAME)
 
 
-def test_residuals_are_those_of_the_fit_and_fall(live, diagnosis):
+def test_residuals_are_those_of_the_fit_and_fall(live, warm):
     shown = np.array(run(live, "return [...livePage.shown.residual]"))
-    assert shown == pytest.approx(diagnosis.fit.residual / UM, abs=1e-3)
-    run(live, CLICK.replace("NAME", diagnosis.found[0].name))
+    assert shown == pytest.approx(warm.fit.residual / UM, abs=1e-3)
+    run(live, CLICK.replace("NAME", warm.found[0].name))
     shown = np.array(run(live, "return [...livePage.shown.residual]"))
-    assert shown == pytest.approx(diagnosis.start.residual / UM, abs=2e-3)
+    assert shown == pytest.approx(warm.start.residual / UM, abs=2e-3)
 
 
 def test_pulled_to_its_fitted_size_nothing_changes_and_pulled_to_nothing_it_is_off(live):
@@ -144,15 +133,15 @@ def test_the_time_constant_has_its_best_place_where_it_was_found(live):
     assert run(live, move.replace("VALUE", str(np.log(found[1]))))[0] == pytest.approx(found[0])
 
 
-def test_a_look_alike_takes_the_place_of_the_found_effect(live, diagnosis):
+def test_a_look_alike_takes_the_place_of_the_found_effect(live, warm):
     rival = run(live, "return livePage.board.switches[0].alike[0]")
     run(live, CLICK.replace("NAME", rival))
     assert run(live, "return livePage.board.on.map(s => s.name)") == [rival]
     run(live, "document.getElementById('again').click()")
-    assert run(live, "return livePage.board.on.map(s => s.name)") == [diagnosis.found[0].name]
+    assert run(live, "return livePage.board.on.map(s => s.name)") == [warm.found[0].name]
 
 
-def test_touches_are_pointed_at_chosen_and_listed(live, diagnosis):
+def test_touches_are_pointed_at_chosen_and_listed(live, warm):
     live.execute_script("livePage.touched.view.draw()")
     hit = """const { view, dots } = livePage.touched, t = livePage.data.touches, out = [];
         for (let i = 0; i < t.count && out.length < 3; i += 7) {
@@ -169,7 +158,7 @@ def test_touches_are_pointed_at_chosen_and_listed(live, diagnosis):
     send = send.replace("X +", f"{x} +").replace("Y +", f"{y} +")
     words, marked = run(live, send.replace("KIND", "pointermove"))
     assert marked == i
-    run_, fit = diagnosis.run, diagnosis.fit
+    run_, fit = warm.run, warm.fit
     assert f"line {run_.line[i]}," in words
     assert str(run_.touches.feature[i]) in words
     assert f"{fit.residual[i] / UM:+.2g}"[:4] in words.replace("−", "-")
@@ -184,15 +173,15 @@ def test_touches_are_pointed_at_chosen_and_listed(live, diagnosis):
     assert run(live, "return document.getElementById('chosen').textContent") == ""
 
 
-def test_a_touch_has_the_line_of_its_program(browser, diagnosis, tmp_path):
+def test_a_touch_has_the_line_of_its_program(browser, warm, tmp_path):
     """Rows of a program, of a program whose text was not at hand, and rows without a program."""
-    known = diagnosis.fit.run
+    known = warm.fit.run
     count = len(known)
     program = np.array(["MS_A_1", "MS_A_2", ""])[np.arange(count) % 3]
     number = np.where(program == "", 0, np.arange(count) + 10)
     line = np.where(program == "MS_A_1", 7 * number, 0)
     stated = replace(known, program=program, touch=number, program_line=line)
-    board = diagnosed_board(replace(diagnosis, steps=(*diagnosis.steps[:1],), candidates=()))
+    board = diagnosed_board(replace(warm, steps=(*warm.steps[:1],), candidates=()))
     board = replace(board, fit=replace(board.fit, run=stated))
     opened(browser, written(tmp_path / "program.html", run_view(board, Findings("run.csv"))))
     tip = "livePage.mark(ROW); return document.querySelector('.tip').textContent"
@@ -208,9 +197,9 @@ def test_a_touch_has_the_line_of_its_program(browser, diagnosis, tmp_path):
     assert faults(browser) == []
 
 
-def test_the_true_body_stands_behind_the_touches(diagnosis):
+def test_the_true_body_stands_behind_the_touches(warm):
     """With a body of the user it is that, to the grain of the page; without, what was touched."""
-    board, cube = diagnosed_board(diagnosis), np.arange(36.0).reshape(4, 3, 3) * 5.0
+    board, cube = diagnosed_board(warm), np.arange(36.0).reshape(4, 3, 3) * 5.0
     data = run_data(board, Findings("run.csv", body=cube))
     body = data["body"]
     assert unpacked(body) * body["grain"] == pytest.approx(cube.reshape(-1), abs=body["grain"])
@@ -290,8 +279,8 @@ def held_out(run_):
     ],
     ids=lambda f: f.__name__,
 )
-def test_odd_runs_are_shown_as_far_as_they_go(odd, browser, diagnosis, tmp_path):
-    found = compare(odd(diagnosis.run[::5]), ordinary_model(diagnosis.run.touches.chain))
+def test_odd_runs_are_shown_as_far_as_they_go(odd, browser, warm, tmp_path):
+    found = compare(odd(warm.run[::5]), ordinary_model(warm.run.touches.chain))
     view = run_view(compared_board(found), Findings("odd.csv"))
     opened(browser, written(tmp_path / "odd.html", view))
     fitted, held, *_ = run(browser, FIGURES)
@@ -320,8 +309,8 @@ def test_odd_runs_are_shown_as_far_as_they_go(odd, browser, diagnosis, tmp_path)
     assert faults(browser) == []
 
 
-def test_no_effect_at_all(browser, diagnosis, tmp_path):
-    board = diagnosed_board(replace(diagnosis, steps=diagnosis.steps[:1], candidates=()))
+def test_no_effect_at_all(browser, warm, tmp_path):
+    board = diagnosed_board(replace(warm, steps=warm.steps[:1], candidates=()))
     assert board.switches == ()
     opened(browser, written(tmp_path / "none.html", run_view(board, Findings("none.csv"))))
     said = run(browser, "return document.getElementById('effect-list').textContent")
@@ -347,16 +336,16 @@ def unpacked(one):
     return numbers_of(base64.b64decode(one["base64"]), one["kind"])
 
 
-def test_of_hundreds_of_effects_fifteen_are_offered(diagnosis):
-    run_ = diagnosis.run[::4]
+def test_of_hundreds_of_effects_fifteen_are_offered(warm):
+    run_ = warm.run[::4]
     assert len(candidate_effects(run_.touches)) > 200
     board = compared_board(compare(run_, ordinary_model(run_.touches.chain)))
     assert 5 < len(board.switches) <= MOST_SWITCHES
 
 
-def test_data_of_odd_runs_hold_numbers_wherever_the_page_computes_with_them(diagnosis):
+def test_data_of_odd_runs_hold_numbers_wherever_the_page_computes_with_them(warm):
     """Twelve touches, no poses, one touch a feature, nothing but NaN in two columns."""
-    few = diagnosis.run[:: len(diagnosis.run) // 12]
+    few = warm.run[:: len(warm.run) // 12]
     count = len(few)
     odd = changed(
         few,
@@ -373,9 +362,9 @@ def test_data_of_odd_runs_hold_numbers_wherever_the_page_computes_with_them(diag
             assert np.all(np.isfinite(unpacked(one))), path
 
 
-def test_what_was_touched_is_drawn_from_its_points(diagnosis):
+def test_what_was_touched_is_drawn_from_its_points(warm):
     """Corners of a ball lie on it; those of a face on its points."""
-    t = diagnosis.run.touches
+    t = warm.run.touches
     bodies = touched_bodies(t)
     assert len(bodies) == len(set(t.feature.tolist()))
     near = partial(np.linalg.norm, axis=-1)
@@ -385,12 +374,12 @@ def test_what_was_touched_is_drawn_from_its_points(diagnosis):
         assert away.max() < 25.0
 
 
-def test_in_a_notebook_the_view_stands_in_a_frame(browser, diagnosis, tmp_path):
-    framed = Framed("run.csv", "One effect is missing.", diagnosis_view(diagnosis, "run.csv"))
+def test_in_a_notebook_the_view_stands_in_a_frame(browser, warm, tmp_path):
+    framed = Framed("run.csv", "One effect is missing.", diagnosis_view(warm, "run.csv"))
     path = tmp_path / "notebook.html"
     path.write_text(f"<!DOCTYPE html><title>n</title>{framed._repr_html_()}", encoding="utf-8")
     opened(browser, path, frame=0)
-    held_out = diagnosis.fit.test_rms / UM
+    held_out = warm.fit.test_rms / UM
     assert run(browser, FIGURES)[1] == pytest.approx(held_out)
     browser.switch_to.default_content()
     assert faults(browser) == []
