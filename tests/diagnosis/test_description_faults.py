@@ -66,7 +66,9 @@ def test_rotary_axes_in_the_other_order_are_named_with_the_chain(texts) -> None:
     assert fault.notation == "[w C' B' X' f Y Z (C1) t]"
 
 
-@pytest.mark.parametrize(("radius", "change"), [("2.9", 0.1), ("3.08", -0.08)])
+@pytest.mark.parametrize(
+    ("radius", "change"), [("2.9", 0.1), pytest.param("3.08", -0.08, marks=pytest.mark.slow)]
+)
 def test_a_ball_radius_comes_back_with_its_sign(texts, radius, change) -> None:
     run, machine = texts
     (fault,) = faults_in(run.replace("radius_mm = 3.0", f"radius_mm = {radius}"), machine)

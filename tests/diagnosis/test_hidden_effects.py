@@ -12,10 +12,12 @@ from simulator_experiment import random_experiment, random_noise
 
 from matstd.diagnosis.answer.run_diagnosis import diagnose
 from matstd.diagnosis.answer.verdict import Verdict
+from matstd.diagnosis.fit.identification import fit_run
 from matstd.diagnosis.remarks import What
 from matstd.report.words.verdict_words import verdict_sentence
 from matstd.twin.library.catalogue import parse_effect
-from matstd.twin.model.model import columns
+from matstd.twin.library.ordinary import ordinary_model
+from matstd.twin.model.model import Model, columns
 from matstd.twin.units import UM
 
 WITHIN = 4.0
@@ -103,11 +105,10 @@ def test_most_single_effects_are_named_themselves_first(diagnosed) -> None:
 def test_signs(case) -> None:
     """The simulator's amplitudes are positive by its formulas, which are those of the contract."""
     for name in ("backlash(X)", "thermal-expansion(Y,scaleY)"):
-        run = case(*SINGLE[name], (name,)).run[::3]
-        few = [parse_effect(n, run.touches.chain) for n in (name, "drift", "stylus-bending")]
-        (step,) = diagnose(run, candidates=few).steps[1:]
-        assert step.effect.name == name
-        assert amplitude(step.reported).value > 0.0
+        run = case(*SINGLE[name], (name,)).run
+        chain = run.touches.chain
+        model = Model(chain, (*ordinary_model(chain).effects, parse_effect(name, chain)))
+        assert fit_run(run, model).theta[len(model.parameters) - 1] > 0.0
     run = case(2, "hsm600u", ("backlash(X)",)).run[::3]
     (hidden,) = case(2, "hsm600u", ("backlash(X)",)).truth["hidden"]
     turned = columns([parse_effect("backlash(X)", run.touches.chain)], run.touches)[:, 0]

@@ -33,7 +33,11 @@ def numbers(pattern, line):
 
 
 @pytest.mark.parametrize(
-    ("machine", "stated", "longer"), [("fork", 220.0, 1.0), ("hsm600u", -420.0, 0.3)]
+    ("machine", "stated", "longer"),
+    [
+        ("hsm600u", -420.0, 0.3),
+        pytest.param("fork", 220.0, 1.0, marks=pytest.mark.slow),
+    ],
 )
 def test_a_probe_too_long_is_reported_beside_the_pivot(tmp_path, capsys, machine, stated, longer):
     """A longer tool R_B l and a pivot (I - R_B) l add up to l, which is where the standard stands.

@@ -9,6 +9,7 @@ import pytest
 from matstd.artefact.body.limits import check
 from matstd.artefact.brief.brief import Brief
 from matstd.artefact.brief.project_file import read_project
+from matstd.artefact.compare import comparison
 from matstd.artefact.feasibility.within_travels import travels
 from matstd.artefact.place.placement import design_standard
 from matstd.artefact.worth import ball_choice
@@ -61,6 +62,8 @@ def test_a_design_for_every_kind_of_machine(
     project = small(name)
     assert project.chain.notation == MACHINES[name]
     monkeypatch.setattr(ball_choice, "_PLACES", 60)
+    monkeypatch.setattr(comparison, "COUNTS", (4,))
+    monkeypatch.setattr(comparison, "_SCATTER_SIZE", 600)
     rng_place, rng_proof = np.random.default_rng(project.seed).spawn(2)
     found = travels(project)
     assert not found.against

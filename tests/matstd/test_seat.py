@@ -109,7 +109,7 @@ def shared(first: trimesh.Trimesh, second: trimesh.Trimesh) -> float:
 def test_clamps_in_the_base_are_those_that_share_volume_with_it(upright: bool) -> None:
     rng, seen = np.random.default_rng(11), {True: 0, False: 0}
     project = with_table(example(), sides_mm=[900.0, 900.0])
-    for _ in range(16):
+    for _ in range(11):
         place = np.array([*rng.uniform(-60.0, 60.0, 2), 0.0])
         T_face = pose(rotation(np.array([0.0, 0.0, rng.uniform(-0.6, 0.6)])), place)
         T = T_face.copy()
@@ -129,7 +129,7 @@ def test_clamps_in_the_base_are_those_that_share_volume_with_it(upright: bool) -
             assert "would do" in message
             at = literal_eval(message.rsplit("at_mm = ", 1)[1].removesuffix(" would do"))
             assert shared(base, clamp_mesh(body | {"at_mm": at})) < 1.0
-    assert min(seen.values()) > 2
+    assert min(seen.values()) > 1
 
 
 @pytest.mark.parametrize("is_disc", [True, False])
@@ -152,7 +152,7 @@ def test_standards_over_the_edge_are_those_with_volume_outside(is_disc: bool) ->
         return trimesh.boolean.union(parts, engine="manifold")
 
     tables = {more: table(more) for more in (allowed - NEAR, allowed + NEAR)}
-    for _ in range(26):
+    for _ in range(16):
         place = np.array([*rng.uniform(-80.0, 80.0, 2), 0.0])
         T = pose(rotation(np.array([0.0, 0.0, rng.uniform(-np.pi, np.pi)])), place)
         base = base_mesh().apply_transform(T)
@@ -167,7 +167,7 @@ def test_standards_over_the_edge_are_those_with_volume_outside(is_disc: bool) ->
             origin = literal_eval(message.rsplit("origin_mm = ", 1)[1].removesuffix(" would do"))
             moved = base_mesh().apply_transform(pose(T[:3, :3], np.array(origin)))
             assert moved.volume - shared(moved, tables[allowed + NEAR]) < 1.0
-    assert min(seen.values()) > 4
+    assert min(seen.values()) > 2
 
 
 def setup_at(x: float, y: float, z: float) -> Setup:

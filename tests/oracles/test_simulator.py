@@ -182,6 +182,7 @@ def test_effect_of_the_library_explains_what_the_simulator_hides(experiments, la
         assert np.linalg.norm(same) / unit == pytest.approx(size, rel=5e-3)
 
 
+@pytest.mark.slow
 def test_unknown_effects_are_outside_the_library(experiments) -> None:
     """Nothing in the library reproduces more than half of a cable, a pump or a chiller."""
     e, plain, touches = experiments["hsm600u"]

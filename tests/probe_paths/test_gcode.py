@@ -175,10 +175,11 @@ def test_what_must_not_run_is_one_line(old, new, reason, made, chain):
     assert "\n" not in str(refusal.value)
 
 
-def test_every_line_that_is_lost_is_noticed_or_a_remark(made, chain):
+@pytest.mark.parametrize("step", [5, pytest.param(1, marks=pytest.mark.slow)])
+def test_every_line_that_is_lost_is_noticed_or_a_remark(made, chain, step):
     """A touch less, a status less, half a test: no line of the code can go without a word."""
     lines = made.programs[1].text.splitlines()
-    code = [i for i, line in enumerate(lines) if not line.startswith(";")]
+    code = [i for i, line in enumerate(lines) if not line.startswith(";")][::step]
     silent = [lines[i] for i in code if _is_taken(lines[:i] + lines[i + 1 :], chain)]
     # these the control or the operator does not need, or a move or touch follows all the same; B
     # and C stand at zero where their zero is tested, and the number before is zero too
