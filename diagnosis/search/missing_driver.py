@@ -11,6 +11,7 @@ that remain.
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -65,17 +66,27 @@ class Unrecorded:
 
     def terms(self, touches: Touches) -> Sequence[Term]:
         """Terms of the law, once for the mean and for every half wave."""
-        base = replace(touches, temperature={SENSOR: np.full(len(touches), T_REF)})
+        base, *driven = _driven(touches)
         still = [t.amount for t in self.law.terms(base)]
-        out = []
-        for k in range(self.half_waves + 1):
-            wave = half_wave(touches, k)
-            driven = replace(touches, temperature={SENSOR: T_REF + wave})
-            out += [
-                term._replace(parameter=k, amount=term.amount - zero)
-                for term, zero in zip(self.law.terms(driven), still, strict=True)
-            ]
-        return tuple(out)
+        return tuple(
+            term._replace(parameter=k, amount=term.amount - zero)
+            for k in range(self.half_waves + 1)
+            for term, zero in zip(self.law.terms(driven[k]), still, strict=True)
+        )
+
+
+_DRIVEN: WeakKeyDictionary[Touches, list[Touches]] = WeakKeyDictionary()
+
+
+def _driven(touches: Touches) -> list[Touches]:
+    """The touches at a temperature that stands, and at every half wave; made once for all laws."""
+    if touches not in _DRIVEN:
+        waves = [half_wave(touches, k) for k in range(max(COURSES) + 1)]
+        _DRIVEN[touches] = [
+            replace(touches, temperature={SENSOR: T_REF + wave})
+            for wave in (np.zeros(len(touches)), *waves)
+        ]
+    return _DRIVEN[touches]
 
 
 def half_wave(touches: Touches, k: int) -> Array:
