@@ -34,12 +34,9 @@ from check_types import link_folder  # noqa: E402
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 ROOMS: dict[str, str] = PROJECT["tool"]["setuptools"]["package-dir"]
 MOST_FILES = 8
-"""The same where tests are chosen by what they import."""
-TIMEOUT = 600.0
-"""Seconds after which a wrong line counts as missed: busy cores may keep the tests from ending."""
-MOST_TESTS, MOST_SECONDS = 150, 60.0
-"""Tests that one wrong line is shown to, and their time: the share that is printed is a lower bound
-where more execute it."""
+"""Test files that one wrong line is shown to: the share that is printed is a lower bound where more
+execute it."""
+NOTICED, MISSED, UNDECIDED = "noticed", "MISSED", "undecided"
 OPPOSITE = {
     ast.Lt: ">=", ast.LtE: ">", ast.Gt: "<=", ast.GtE: "<", ast.Eq: "!=", ast.NotEq: "==",
     ast.In: "not in", ast.NotIn: "in", ast.Is: "is not", ast.IsNot: "is",
@@ -224,8 +221,8 @@ class Imports:
 class Copy:
     """A copy of the project in which one line at a time is wrong."""
 
-    def __init__(self, place: Path) -> None:
-        self.root, self.writes = place / "project", 1_000_000_000
+    def __init__(self, place: Path, timeout: float) -> None:
+        self.root, self.timeout, self.writes = place / "project", timeout, 1_000_000_000
         self.path = os.pathsep.join([str(self.root), os.environ.get("PYTHONPATH", "")])
         self.passed: set[str] = set()
         listed = subprocess.run(
@@ -247,21 +244,21 @@ class Copy:
         (self.root / name).write_text(text, encoding="utf-8")
         os.utime(self.root / name, (self.writes, self.writes))
 
-    def notices(self, mutant: Mutant, tests: list[str]) -> bool:
-        """Whether a test fails with a wrong line and passes without it."""
+    def word(self, mutant: Mutant, tests: list[str]) -> str:
+        """Whether a test fails with a wrong line and passes without it, or none ended in time."""
         right = (self.root / mutant.file).read_text(encoding="utf-8")
         self.write(mutant.file, mutant.apply(right))
         try:
             failed = self.first_failure(tests)
         except subprocess.TimeoutExpired:
-            return False
+            return UNDECIDED
         finally:
             self.write(mutant.file, right)
         if failed and failed not in self.passed:
             if self.first_failure([failed]):
                 sys.exit(f"{failed} fails with every line right: it cannot notice a wrong one")
             self.passed.add(failed)
-        return bool(failed)
+        return NOTICED if failed else MISSED
 
     def first_failure(self, tests: list[str]) -> str:
         """The first test that fails, or the first of all where none could begin; empty for none."""
@@ -273,7 +270,7 @@ class Copy:
             env=os.environ | {"PYTHONPATH": self.path},
             capture_output=True,
             text=True,
-            timeout=TIMEOUT,
+            timeout=self.timeout,
             check=False,
         )
         if done.returncode in (0, 5):
@@ -296,38 +293,43 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--rooms", nargs="+", help="draw from these alone; all without it")
-    parser.add_argument("--most", type=int, help="try the first of the lines alone")
+    parser.add_argument("--skip", type=int, default=0, help="lines that were tried before")
+    parser.add_argument("--most", type=int, help="try so many of the lines alone")
+    parser.add_argument(
+        "--timeout", type=float, default=600.0, help="seconds after which a line is undecided"
+    )
     options = parser.parse_args()
     rooms = options.rooms or [*ROOMS.values(), "matstd"]
     mutants = drawn(options.n, options.seed, rooms)
     imports = Imports()
-    noticed: dict[Mutant, bool] = {}
+    words: dict[Mutant, str] = {}
     copies: Queue[Copy] = Queue()
     with tempfile.TemporaryDirectory() as place:
         for k in range(options.jobs):
-            copies.put(Copy(Path(place) / str(k)))
+            copies.put(Copy(Path(place) / str(k), options.timeout))
 
         def tried(mutant: Mutant) -> None:
             copy = copies.get()
-            noticed[mutant] = copy.notices(mutant, imports.chosen(mutant))
+            words[mutant] = copy.word(mutant, imports.chosen(mutant))
             copies.put(copy)
-            word = "noticed" if noticed[mutant] else "MISSED"
-            print(f"{len(noticed):4} {word:8} {mutant.file}:{mutant.line}", flush=True)
-            if not noticed[mutant]:
+            print(f"{len(words):4} {words[mutant]:9} {mutant.file}:{mutant.line}", flush=True)
+            if words[mutant] != NOTICED:
                 source = (ROOT / mutant.file).read_text(encoding="utf-8")
                 for sign, text in (("-", source), ("+", mutant.apply(source))):
                     print(f"     {sign} {text.splitlines()[mutant.line - 1].strip()}", flush=True)
 
         with ThreadPoolExecutor(options.jobs) as pool:
-            list(pool.map(tried, mutants[: options.most]))
-    killed = sum(noticed.values())
-    low, high = interval(killed, len(noticed))
-    print(f"\nseed {options.seed}: {killed} of {len(noticed)} wrong lines are noticed, "
-          f"{killed / len(noticed):.0%} ({low:.0%} to {high:.0%} with 95 %)")  # fmt: skip
-    by_room = Counter(m.file.split("/")[0] for m in noticed)
-    for room, count in sorted(by_room.items()):
-        found = sum(noticed[m] for m in noticed if m.file.startswith(f"{room}/"))
-        print(f"  {room:14} {found:3} of {count}")
+            list(pool.map(tried, mutants[options.skip :][: options.most]))
+    count = Counter(words.values())
+    killed = count[NOTICED]
+    low, high = interval(killed, len(words))
+    print(f"\nseed {options.seed}: {killed} of {len(words)} wrong lines are noticed, "
+          f"{killed / len(words):.0%} ({low:.0%} to {high:.0%} with 95 %), "
+          f"{count[MISSED]} missed, {count[UNDECIDED]} undecided")  # fmt: skip
+    by_room = Counter(m.file.split("/")[0] for m in words)
+    for room, count_of in sorted(by_room.items()):
+        found = sum(words[m] == NOTICED for m in words if m.file.startswith(f"{room}/"))
+        print(f"  {room:14} {found:3} of {count_of}")
 
 
 if __name__ == "__main__":
