@@ -213,7 +213,13 @@ LIMITS_OF_USER = {
 @pytest.mark.parametrize(
     ("limits", "what", "kind", "line"),
     [
-        (Limits(gap=60.0), {}, NotBuildable, r"only 5 of 6 patches fit .* probe need 66 mm"),
+        pytest.param(
+            Limits(gap=60.0),
+            {},
+            NotBuildable,
+            r"only 5 of 6 patches fit .* probe need 66 mm",
+            marks=pytest.mark.slow,
+        ),
         (
             Limits(),
             {"steepest": 1e-3},

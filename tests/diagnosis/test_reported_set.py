@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from run_text import every
 from simulator_case import simulate_case
 
 from matstd.cli import main
@@ -157,10 +158,7 @@ def folder(tmp_path_factory):
     """A run with a hidden warming of the column, and its machine."""
     place = tmp_path_factory.mktemp("run")
     run, machine, _ = simulate_case(np.random.default_rng(5), LAG[1], LAG[2], with_alike=False)
-    head = run.partition("\nfeature,")[0].count("\n") + 2
-    lines = run.splitlines()
-    half = "\n".join([*lines[:head], *lines[head::2]]) + "\n"
-    (place / "run.csv").write_text(half, encoding="utf-8")
+    (place / "run.csv").write_text(every(2, run), encoding="utf-8")
     (place / "machine.toml").write_text(machine, encoding="utf-8")
     return place
 

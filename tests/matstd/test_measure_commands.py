@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from run_text import every
 from simulator_case import simulate_case
 
 from matstd.cli import main
@@ -35,7 +36,7 @@ def folder(tmp_path_factory):
     run, machine, _ = simulate_case(
         np.random.default_rng(21), "hmc1995", ("backlash(Y)",), with_alike=False
     )
-    (place / "run.csv").write_text(run, encoding="utf-8")
+    (place / "run.csv").write_text(every(2, run), encoding="utf-8")
     (place / "machine.toml").write_text(machine, encoding="utf-8")
     out = place / "added"
     out.mkdir()

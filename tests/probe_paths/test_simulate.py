@@ -26,6 +26,7 @@ MACHINE = Path(__file__).parents[2] / "examples" / "hsm600u-machine.toml"
 """The golden programs' machine has the same travels and pivots."""
 
 
+ALL = ("MS_A_1", "MS_A_2", "MS_A_3")
 NARROW = ["--only", "thermal-lag", "backlash", "--no-report", "--no-learn"]
 """A planted warming is looked for among its rivals, not in the whole library."""
 
@@ -47,7 +48,7 @@ def folder(tmp_path, programs, small):
 @pytest.fixture(scope="module")
 def simulated_once(tmp_path_factory, programs, small):
     place = laid_out(tmp_path_factory.mktemp("simulated"), programs, small)
-    assert command(place, "--logs", str(place / "logs")) == 0
+    assert command(place, "--logs", str(place / "logs"), programs=ALL) == 0
     return place
 
 
@@ -57,7 +58,7 @@ def logged(simulated_once, tmp_path):
     return shutil.copytree(simulated_once, tmp_path / "logged")
 
 
-def command(folder, *more, programs=("MS_A_1", "MS_A_2", "MS_A_3")):
+def command(folder, *more, programs=ALL[:1]):
     files = [str(folder / "programs" / f"{name}.H") for name in programs]
     places = [
         "--standard",
@@ -69,7 +70,8 @@ def command(folder, *more, programs=("MS_A_1", "MS_A_2", "MS_A_3")):
 
 
 def test_a_run_file_of_all_programs(folder, plan, capsys):
-    assert command(folder, "--noise-um", "0", "--logs", str(folder / "logs")) == 0
+    options = ("--noise-um", "0", "--logs", str(folder / "logs"))
+    assert command(folder, *options, programs=ALL) == 0
     assert f"{len(plan)} touches" in capsys.readouterr().out
     run = read_run(folder / "out" / "run.csv")
     assert len(run) == len(plan)
@@ -189,7 +191,8 @@ def evaluated(folder, *more, logs="logs"):
 
 def test_logs_of_a_control_become_the_run_that_was_simulated(folder, capsys):
     """`evaluate` sees logs, standard and nominal machine; `simulate` said the same of them."""
-    assert command(folder, "--random-errors", "--logs", str(folder / "logs")) == 0
+    options = ("--random-errors", "--logs", str(folder / "logs"))
+    assert command(folder, *options, programs=ALL) == 0
     assert evaluated(folder) == 0
     assert "touches at 5 table poses" in capsys.readouterr().out
     made, read = (read_run(folder / name / "run.csv") for name in ("out", "read"))

@@ -38,7 +38,7 @@ ANY_ADDRESS = re.compile(r"(?:https?:)?//[\w.]+")
 @pytest.fixture(scope="module")
 def strange(case):
     """A run that hides what no library has, diagnosed among a few candidates."""
-    run = case(32, "hsm600u", ("?cable",), False, (30.0, 35.0)).run[::2]
+    run = case(32, "hsm600u", ("?cable",), False, (30.0, 35.0)).run[::3]
     return diagnose(run, candidates=list(BACKLASH.propose(run.touches)))
 
 
