@@ -253,15 +253,6 @@ class BodyChoice:
                 break
         return longest
 
-    def with_moved_balls(self, made: Standard, places: BallPlaces, touches: int) -> Standard | None:
-        """Choose the balls anew beside the same faces; None where a limit is violated.
-
-        The faces were placed to hide few touches on the balls; now the balls move to where fewest
-        of theirs are hidden.
-        """
-        again = balls_beside(made.patches, len(made.spheres), places, touches)
-        return None if again is None else replace(again, name=made.name, serial=made.serial)
-
     def _most_informative(
         self, faces: list[FreeformPatch], fits: Which, poses: Array, count: int, take: int
     ) -> list[int]:

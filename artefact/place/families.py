@@ -14,9 +14,8 @@ from matstd.artefact.place.identifying import (
     Base,
     Identifying,
     ball_bases,
-    identifying_choice,
+    identifying_choices,
     left_unknown,
-    with_moved_balls,
     with_proof,
 )
 from matstd.artefact.place.proving import proving_touches, touches_on_faces
@@ -185,14 +184,13 @@ def _flat(site: Site, like: Built | None) -> Identifying:
 
 def _with_faces(site: Site) -> tuple[Identifying, Requests]:
     """Balls with small faces between them, and the possible touches on the faces."""
-    options, choice, bodies = site.options, site.options.choice, site.bodies
+    options, bodies = site.options, site.bodies
     if bodies is None:
         raise NotBuildable(f"{options.patches} small faces do not fit")
-    first = identifying_choice(site.criterion, bodies, site.bases, options)
-    found = with_moved_balls(
-        site.criterion, bodies, site.places, first, site.bases[0].value, site.all_poses, choice
+    found = identifying_choices(
+        site.criterion, bodies, site.bases, site.places, site.all_poses, options
     )
-    return with_proof([found, first], site.criterion.reach, choice.proof)
+    return with_proof(found, site.criterion.reach, options.choice.proof)
 
 
 def _figures(site: Site, one: Built) -> FamilyFigures:

@@ -13,7 +13,7 @@ from matstd.artefact.body import DatumSphere, Standard
 from matstd.artefact.brief import PlacementOptions
 from matstd.artefact.compare import Rival
 from matstd.artefact.layout import with_spheres
-from matstd.artefact.place.body_choice import BodyChoice
+from matstd.artefact.place.body_choice import BodyChoice, balls_beside
 from matstd.artefact.place.proving import touches_on_faces
 from matstd.artefact.reach import Mask, ProbeReach, Requests
 from matstd.artefact.worth import (
@@ -27,6 +27,7 @@ from matstd.artefact.worth import (
 )
 from matstd.information.criteria import Posterior
 from matstd.information.selection import Certificate
+from matstd.twin.beside import beside
 from matstd.twin.errors import NotBuildable, NotReachable
 from matstd.twin.frames import Array
 
@@ -97,24 +98,39 @@ def ball_bases(
     return [Base(body.spheres, tried, 0.0)]
 
 
-def identifying_choice(
-    criterion: Criterion, bodies: BodyChoice, bases: list[Base], options: PlacementOptions
-) -> Identifying:
-    """Balls with the faces that cost least of some draws, and their touches.
+def identifying_choices(
+    criterion: Criterion,
+    bodies: BodyChoice,
+    bases: list[Base],
+    places: BallPlaces,
+    all_poses: Array,
+    options: PlacementOptions,
+) -> list[Identifying]:
+    """Balls with the faces that cost least of some draws, and their touches; the best first.
 
     The cost of faces is first estimated from the touches on the balls alone that remain possible,
-    completed and exchanged: within half a percent of the whole search, in a tenth of its time.
+    completed and exchanged: within half a percent of the whole search, in a tenth of its time. Then
+    balls and table poses are also chosen anew beside the same faces, on the second core, unless the
+    faces cost a negligible part of the value of the balls alone.
     """
-    found = _best_draw(criterion, bodies, bases, options)
-    here = criterion.on(replace(found.standard, patches=()))
-    chosen, nearness = chosen_touches_on(here, found.tried, options.choice, begin=found.chosen)
-    return Identifying(
-        standard=found.standard,
-        poses=found.poses,
-        tried=found.tried,
-        chosen=chosen,
-        nearness=nearness,
-    )
+    drawn, choice = _best_draw(criterion, bodies, bases, options), options.choice
+    given = criterion, places, drawn.standard, all_poses, choice
+    with beside(_with_moved_balls, *given) as moved:
+        here = criterion.on(replace(drawn.standard, patches=()))
+        chosen, nearness = chosen_touches_on(here, drawn.tried, choice, begin=drawn.chosen)
+        first = Identifying(
+            standard=drawn.standard,
+            poses=drawn.poses,
+            tried=drawn.tried,
+            chosen=chosen,
+            nearness=nearness,
+        )
+        if first.nearness.value <= _NEGLIGIBLE_COST * bases[0].value:
+            return [first]
+        other = moved()
+    if other is None or other.nearness.value >= first.nearness.value:
+        return [first]
+    return [other, first]
 
 
 def _best_draw(
@@ -161,24 +177,22 @@ def _draw(
     return best
 
 
-def with_moved_balls(
+def _with_moved_balls(
     criterion: Criterion,
-    bodies: BodyChoice,
     places: BallPlaces,
-    found: Identifying,
-    alone: float,
+    standard: Standard,
     all_poses: Array,
     choice: TouchOptions,
-) -> Identifying:
-    """The same faces with balls and table poses chosen anew beside them, if that is better.
+) -> Identifying | None:
+    """The same faces with balls and table poses chosen anew; None where a limit is violated.
 
-    Nothing is tried where the faces cost a negligible part of the value of the balls alone.
+    The faces were placed to hide few touches on the balls; now the balls move to where fewest of
+    theirs are hidden.
     """
-    if found.nearness.value <= _NEGLIGIBLE_COST * alone:
-        return found
-    standard = bodies.with_moved_balls(found.standard, places, choice.touches)
-    if standard is None:
-        return found
+    again = balls_beside(standard.patches, len(standard.spheres), places, choice.touches)
+    if again is None:
+        return None
+    standard = replace(again, name=standard.name, serial=standard.serial)
     bare = replace(standard, patches=())
     plain, here = criterion.plain.on(bare), criterion.on(bare)
     try:
@@ -188,9 +202,7 @@ def with_moved_balls(
         )
         chosen, nearness = chosen_touches_on(here, tried, choice)
     except NotReachable:
-        return found
-    if nearness.value >= found.nearness.value:
-        return found
+        return None
     return Identifying(
         standard=standard, poses=poses, tried=tried, chosen=chosen, nearness=nearness
     )

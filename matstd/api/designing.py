@@ -121,7 +121,7 @@ class Project:
         from matstd.stages.design import design
         from matstd.stages.refusals import REFUSED_REACH, REFUSED_ROOM, refusals
         from matstd.stages.sheets import write_sheets
-        from matstd.twin.beside import beside
+        from matstd.twin.beside import beside, kept_beside
         from matstd.twin.files import results_folder
         from matstd.workers import connected
 
@@ -132,6 +132,7 @@ class Project:
             results_folder(out, force, leftovers, [REFUSED_REACH, REFUSED_ROOM]) as folder,
             refusals(brief, folder, out),
             connected(scheduler) as workers,
+            kept_beside(),
         ):
             made = design(brief, folder, progress, workers)
             progress("report", 0, 1)

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from matstd.twin import beside as module
-from matstd.twin.beside import beside
+from matstd.twin.beside import beside, kept_beside
 from matstd.twin.compute import blocks
 from matstd.twin.errors import BadFile
 from matstd.twin.files.machine_file import read_machine
@@ -59,6 +59,23 @@ def test_on_one_core_it_is_done_here_when_asked_for() -> None:
     assert order == ["first", "called"]
     with beside(blocks, 1, 1):
         pass  # who does not ask gets nothing
+
+
+@pytest.mark.usefixtures("two_cores")
+def test_a_kept_process_serves_the_next_call_until_all_is_over() -> None:
+    with kept_beside():
+        with beside(os.getpid) as first, beside(os.getpid) as second:
+            processes = {first(), second()}
+        with beside(read_machine, "none.toml") as refused, pytest.raises(BadFile):
+            refused()
+        for _ in range(3):
+            with beside(os.getpid) as again:
+                assert again() in processes
+        with kept_beside(), beside(time.sleep, 600.0):
+            pass  # one that has not answered is not kept
+        assert len(module._Kept.idle or []) == 1
+    with beside(os.getpid) as other:
+        assert other() not in processes
 
 
 @pytest.mark.usefixtures("two_cores")
