@@ -3,9 +3,9 @@
     python benchmarks/progress_estimate.py PROJECT.toml ... [--record events.json]
     python benchmarks/progress_estimate.py --replay events.json ...
 
-Runs every design (minutes each, on an idle machine) and records when its stages report; prints the share of every
-stage, and the estimate at half time over what was left, with the shares of `matstd design` and
-with those of the other recorded designs of machines of its kind.
+Runs every design (minutes each, on an idle machine) and records when its stages report; prints the
+share of every stage, and the estimate at half time over what was left, with the shares of `matstd
+design` and with those of the other recorded designs of machines of its kind.
 """
 
 import argparse

@@ -208,7 +208,10 @@ def _jobs(
             unreachable.append(name)
             continue
         lots = random_lots(tried, options.touches, rng)
-        jobs.append(_job(name, criterion.on(body), tried, lots, is_relaxed=True))
+        here = criterion.on(body)
+        jobs.append(
+            _Job(name=name, here=here, tried=tried, lots=lots, by=here.name, is_relaxed=True)
+        )
     for name, body in bodies.items():
         try:
             here = criterion.on(body)
@@ -217,7 +220,8 @@ def _jobs(
         except NotReachable:
             unreachable.append(name)
             continue
-        jobs.append(_job(name, here, tried, random_lots(tried, options.touches, rng)))
+        lots = random_lots(tried, options.touches, rng)
+        jobs.append(_Job(name=name, here=here, tried=tried, lots=lots, by=here.name))
     tried = _scatter(criterion, spread_poses(all_poses, options.poses), rng)
     lots = random_lots(tried, options.touches, rng)
     for name, by in (("chosen by I", "I"), ("chosen by D", "D"), ("at random", "")):
@@ -274,13 +278,6 @@ class _Job:
     lots: list[Requests]
     by: str
     is_relaxed: bool = False
-
-
-def _job(
-    name: str, here: Criterion, tried: Requests, lots: list[Requests], is_relaxed: bool = False
-) -> _Job:
-    """An artefact whose touches are chosen by the criterion of the standard."""
-    return _Job(name, here, tried, lots, here.name, is_relaxed)
 
 
 def _judged(jobs: Sequence[_Job], options: TouchOptions, library: Visibility) -> list[Rival]:
