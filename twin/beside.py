@@ -38,7 +38,8 @@ def kept_beside() -> Iterator[None]:
     if _Kept.idle is not None:
         yield
         return
-    _Kept.idle = idle = []
+    idle: list[_Process] = []
+    _Kept.idle = idle
     try:
         yield
     finally:
