@@ -75,7 +75,7 @@ def beside(
 
     def answer() -> T:
         nonlocal is_done
-        assert not is_done, "a result is asked for once: its process may serve another call"
+        assert not is_done  # asked for once: its process may serve another call
         assert process.stdout is not None
         data = _read(process.stdout)
         if not data:  # it was killed, for its memory most likely
