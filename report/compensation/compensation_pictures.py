@@ -165,7 +165,7 @@ def draw_errors_left(results: Mapping[str, Result]) -> Figure:
     ax.set_ylim(0.0, 1.0)
     ax.set_xlabel("error of the tool point, µm (dotted: with the uncertainty of the model)")
     ax.set_ylabel("share of poses below")
-    ax.legend(fontsize=8, frameon=False, loc="upper left")
+    ax.legend(fontsize=8, frameon=False, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3)
     plain(ax)
     return drawn
 

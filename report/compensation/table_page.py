@@ -92,11 +92,12 @@ def _key(first: Result, done: Sequence[VerifiedTables]) -> list[KeyFigure]:
         if u > 0.0
         else KeyFigure("–", "uncertainty unknown: these errors were stated, not estimated")
     )
+    # what the model does not know remains with every table
     after = [
         KeyFigure(
-            f"{small(rms_length(p.result.after) / UM)} µm",
-            f"remaining with {control_title(p.format)}, rms; "
-            f"expect {small(p.result.expected / UM, 2)} µm",
+            f"{small(p.result.expected / UM, 2)} µm",
+            f"to expect with {control_title(p.format)}, rms; "
+            f"{small(rms_length(p.result.after) / UM)} µm if the model were exact",
         )
         for p in done
     ]

@@ -1,30 +1,47 @@
 """Pictures of a plan: the set-up, where the standard is touched, how the table turns meanwhile."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
 from matstd.artefact.body import DatumSphere, FreeformPatch, Plate
-from matstd.artefact.reach import table_face
+from matstd.artefact.reach import Solid, table_face
 from matstd.probe_paths.plan import TouchPlan
 from matstd.report.style import BLUE, INK, RED, SOFT, Figure, figure, plain
 from matstd.twin.frames import Array, apply, inverse
 from matstd.twin.units import DEG
 
+LARGE_TABLE = 1.6
+"""Width of a table over that of what stands on it, from which on it is not drawn to its edges."""
+
 
 def draw_setup(plan: TouchPlan) -> Figure:
-    """Table, standard and clamps from above, and the probe from the side."""
+    """Table, standard and clamps from above, and the probe from the side.
+
+    Of a table much larger than what stands on it the middle is drawn large, and the whole small.
+    """
     drawn = figure(4.6)
-    top, side = drawn.subplots(1, 2, width_ratios=(1.5, 1.0))
     T_face_table = inverse(table_face(plan.setup.T_table_artefact))
     T_face_artefact = T_face_table @ plan.setup.T_table_artefact
+    base = apply(T_face_artefact, _outline(plan.standard.base.body))
+    table = plan.options.workshop.table
+    low, high = _room_round(base, [k for k in plan.options.workshop.solids if k is not table])
+    edge = apply(table.T_face_solid, _outline(table.plate))
+    is_wide = np.ptp(edge[:, :2], axis=0).max() > LARGE_TABLE * (high - low).max()
+    panels = [["top", "side"], ["top", "whole" if is_wide else "side"]]
+    drawn_on = drawn.subplot_mosaic(panels, width_ratios=(1.5, 1.0), height_ratios=(1.7, 1.0))
+    top, side = drawn_on["top"], drawn_on["side"]
+    if is_wide:
+        _whole_table(drawn_on["whole"], edge, base)
+        top.set_xlim(low[0], high[0])
+        top.set_ylim(low[1], high[1])
     for solid in plan.options.workshop.solids:
         outline = apply(solid.T_face_solid, _outline(solid.plate))
-        is_table = solid is plan.options.workshop.table
+        is_table = solid is table
         top.plot(*outline[:, :2].T, color=SOFT if is_table else RED, lw=1.2)
         if not is_table:
             top.annotate(solid.name, (solid.x, solid.y), color=RED, fontsize=7, ha="center")
-    base = apply(T_face_artefact, _outline(plan.standard.base.body))
     top.plot(*base[:, :2].T, color=BLUE, lw=1.4)
     for patch in plan.standard.patches:
         a, b = patch.half_size
@@ -50,6 +67,24 @@ def draw_setup(plan: TouchPlan) -> Figure:
     plain(top)
     _probe(side, plan)
     return drawn
+
+
+def _room_round(base: Array, solids: Sequence[Solid]) -> tuple[Array, Array]:
+    """Smallest and largest x and y of the standard and all beside it, with a margin, mm."""
+    outlines = [apply(k.T_face_solid, _outline(k.plate)) for k in solids]
+    points = np.concatenate([base, *outlines])[:, :2]
+    low, high = points.min(axis=0), points.max(axis=0)
+    margin = 0.1 * (high - low).max()
+    return low - margin, high + margin
+
+
+def _whole_table(ax: Any, edge: Array, base: Array) -> None:
+    """The table with the standard on it."""
+    ax.plot(*edge[:, :2].T, color=SOFT, lw=1.2)
+    ax.fill(*base[:, :2].T, facecolor=BLUE, alpha=0.3, edgecolor=BLUE, lw=0.8)
+    ax.set_aspect("equal")
+    ax.set_title("the whole table, mm", loc="left")
+    plain(ax)
 
 
 def _outline(plate: Plate) -> Array:

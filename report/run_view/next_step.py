@@ -1,5 +1,7 @@
 """What to do with a result, in one sentence: the last of the first screen."""
 
+import shlex
+
 from matstd.diagnosis.answer import Comparison, Diagnosis, Verdict
 from matstd.report.numbers import plural
 
@@ -15,10 +17,11 @@ def diagnosis_step(result: Diagnosis, title: str, is_saved: bool = False) -> str
         return f"Repeat {what}; their scatter decides whether the residual is noise."
     is_unexplained = result.verdict is Verdict.UNEXPLAINED
     if result.laws is not None and result.laws.laws and (is_unexplained or result.withdrawn):
+        auto = f"`matstd diagnose {_files(title)} --auto`"
         until = (
             "model.toml predicts with it until then."
             if is_unexplained or is_saved
-            else f"`matstd diagnose {title} --auto` puts the law into model.toml until then."
+            else f"{auto} puts the law into model.toml until then."
         )
         return (
             "Look for the cause of the learnt law, rename it in effect.py, and diagnose "
@@ -28,7 +31,7 @@ def diagnosis_step(result: Diagnosis, title: str, is_saved: bool = False) -> str
         return "Record what could cause it (a temperature, a load), and diagnose again."
     if is_unexplained:
         return (
-            f"`matstd learn {title}` looks for a law of what remains. Where none holds, "
+            f"`matstd learn {_files(title)}` looks for a law of what remains. Where none holds, "
             "record what could cause it (a temperature, a load), and diagnose again."
         )
     if result.verdict is Verdict.NONE:
@@ -38,13 +41,18 @@ def diagnosis_step(result: Diagnosis, title: str, is_saved: bool = False) -> str
     if is_saved:
         return f"`matstd compensate` returns model.toml to the machine{probe}."
     return (
-        f"`matstd diagnose {title} --auto` puts {them} into model.toml, and "
+        f"`matstd diagnose {_files(title)} --auto` puts {them} into model.toml, and "
         f"`matstd compensate` returns the model to the machine{probe}."
     )
+
+
+def _files(title: str) -> str:
+    """The runs of a title as a command line has them: blanks need quotation marks."""
+    return " ".join(shlex.quote(name) for name in title.split(", "))
 
 
 def comparison_step(found: Comparison, title: str) -> str:
     """After a comparison; arguments as of `diagnosis_step`."""
     if not found.structure:
         return "Nothing; the model describes this run down to its noise."
-    return f"`matstd diagnose {title} --auto` looks for the effect that the model lacks."
+    return f"`matstd diagnose {_files(title)} --auto` looks for the effect that the model lacks."

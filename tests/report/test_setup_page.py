@@ -1,12 +1,14 @@
 """The set-up sheet: every alarm of the programs explained, every figure that of the plan."""
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from html_tables import shown_tables
 
 from matstd.artefact.body import Meeting, contact
+from matstd.artefact.reach import TABLE, Solid
 from matstd.probe_paths.campaign.tolerance import STEPS_MM, setup_tolerance
 from matstd.probe_paths.emit.writer import Feeds
 from matstd.probe_paths.language.dialect import Dialect
@@ -14,6 +16,7 @@ from matstd.probe_paths.locate.beside import companions
 from matstd.probe_paths.locate.find import Spread
 from matstd.probe_paths.stations.from_brief import Station
 from matstd.report.pages.setup_page import PAGE, PICTURE, write_setup_page
+from matstd.report.plots import draw_setup
 from matstd.twin.frames import apply, inverse, pose, turn
 from matstd.twin.machine.kinematics import linear_directions, tip
 from matstd.twin.units import DEG
@@ -84,3 +87,15 @@ def test_the_tolerance_is_where_the_first_touch_is_lost(golden):
         beyond = STEPS_MM[STEPS_MM.index(tolerance["Z"]) + 1]
         assert lost(beyond) + lost(-beyond) > 0
     assert lost(-9.0) > 0
+
+
+@pytest.mark.parametrize(("half", "is_whole"), [(160.0, True), (1500.0, False)])
+def test_the_picture_shows_the_standard_large_on_any_table(golden, half, is_whole) -> None:
+    plan = golden.plan()
+    shop = replace(plan.options.workshop, table=Solid(TABLE, (half, half), False, -60.0, 0.0))
+    drawn = draw_setup(replace(plan, options=replace(plan.options, workshop=shop)))
+    top = drawn.axes[0]
+    width = np.ptp(top.get_xlim())
+    assert (width > 2.0 * half) == is_whole
+    assert width < 3.0 * 2.0 * plan.standard.base.body.half_size[0]
+    assert ("the whole table, mm" in {ax.get_title("left") for ax in drawn.axes}) != is_whole

@@ -80,7 +80,6 @@ def read_poses(path: str | Path, chain: Chain) -> tuple[Array, Array]:
     lengths = table.numbers("tool_length_mm", largest=FARTHEST, smallest=0.0)
     slip = in_another_unit([float(lengths.max())], "mm", TOOL_LENGTH)
     if slip is not None:
-        longest = int(lengths.argmax())
-        found, expected = f"{lengths[longest]:g}", f"mm; is it in {slip[0]}?"
-        raise table.bad(longest, "tool_length_mm", found, expected)
+        row = int(lengths.argmax())
+        raise table.bad(row, "tool_length_mm", f"{lengths[row]:g}", f"mm; is it in {slip[0]}?")
     return q, lengths

@@ -122,7 +122,30 @@ def _next(args: argparse.Namespace, found: Diagnosis) -> tuple[str, str]:
     tool = np.median(found.run.touches.length)
     tables = Path(args.output).parent / "tables"
     words = called("compensate", model, "--tool-length", f"{tool:g}", "--tables", tables)
-    return f"{words} --within {' '.join(_probed(found))}", "judged where the touches were"
+    words = " ".join([words, *_last_state(found), "--within", *_probed(found)])
+    return words, "judged where the touches were, at the end of the run"
+
+
+def _last_state(found: Diagnosis) -> list[str]:
+    """What drives the effects that were found, as it was at the last touch."""
+    import numpy as np
+
+    from matstd.twin.model import traits
+    from matstd.twin.thermal import OWN, SPINDLE
+    from matstd.twin.units import MINUTE
+
+    touches, effects = found.run.touches, [s.effect for s in found.steps if s.effect is not None]
+    known = [traits(effect) for effect in effects]
+    drives = dict.fromkeys(d for t in known for d in (t.driver, *t.parameter_drives))
+    last = int(np.argmax(touches.time))
+    out = ["--after", f"{touches.time[last] / MINUTE:.0f}"] if effects else []
+    if warm := [d for d in drives if d in touches.temperature]:
+        out += ["--temperature", *(f"{d}={touches.temperature[d][last]:.1f}" for d in warm)]
+    if SPINDLE in drives and touches.spindle_rpm is not None:
+        out += ["--rpm", f"{touches.spindle_rpm[last]:.0f}"]
+    if own := [d.removeprefix(OWN) for d in drives if d.startswith(OWN)]:
+        out += ["--value", *(f"{d}={touches.value[d][last]:.6g}" for d in own)]
+    return out
 
 
 def _probed(found: Diagnosis) -> list[str]:
