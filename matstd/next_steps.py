@@ -136,7 +136,7 @@ def _sensitivity(args: Namespace) -> Step:
 def _uncertainty(args: Namespace) -> Step:
     runs = args.run_files
     if not args.model:
-        words = called("diagnose", *runs, "-o", "diagnosis")
+        words = called("diagnose", *runs, "--standard", args.standard, "-o", "diagnosis")
         return words, "a model in uncertainty --model corrects results and lowers U"
     if len(runs) >= FEWEST_OF_A_TREND:
         return called("trend", *runs, "-o", "trend"), "whether the machine stays as it was"

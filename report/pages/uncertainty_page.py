@@ -4,9 +4,10 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from matstd.diagnosis.task import TaskUncertainty
-from matstd.report.layout import Page, Section, Table, write_page
+from matstd.report.layout import KeyFigure, Page, Section, Table, write_page
+from matstd.report.numbers import plural, um
 from matstd.report.numbers import sentence as as_sentence
-from matstd.report.task import budget_rows
+from matstd.report.task import FEW_VISITS, budget_rows
 from matstd.report.verdict import uncertainty_meaning
 from matstd.twin.units import UM
 
@@ -62,7 +63,7 @@ def write_uncertainty_page(
         means=uncertainty_meaning(found),
         next="Compare U with the tolerance: a fifth of it or less is usual. To lower U, correct "
         "results with a model (`--model`), measure more visits, or another place of the machine.",
-        key=(),
+        key=_key(found),
         sections=[
             Section(sentences=[_MEASURAND.format(standard=standard)]),
             Section("Budget", table=budget_table(found)),
@@ -73,6 +74,18 @@ def write_uncertainty_page(
         ],
     )
     write_page(path, page)
+
+
+def _key(found: Mapping[str, TaskUncertainty]) -> list[KeyFigure]:
+    """U by what results are corrected with, and on how many visits it rests."""
+    known = [
+        KeyFigure(f"± {um(budget.U)}", f"U of results {name} and corrected by b (95 %)")
+        for name, budget in found.items()
+    ]
+    visits = next(iter(found.values())).visits
+    few = "" if visits >= FEW_VISITS else "fair"
+    asked = f"ISO 15530-3 asks for {FEW_VISITS}"
+    return [*known, KeyFigure(plural(visits, "visit"), asked, few)]
 
 
 def _by_face(name: str, budget: TaskUncertainty) -> Section:

@@ -8,9 +8,10 @@ from matstd.report.task.calibration_words import (
     verdict_rows,
 )
 from matstd.report.task.making_words import fewer_lines, making_lines, price_lines
-from matstd.report.task.task_words import budget_rows, measured_sentence, task_lines
+from matstd.report.task.task_words import FEW_VISITS, budget_rows, measured_sentence, task_lines
 
 __all__ = [
+    "FEW_VISITS",
     "budget_rows",
     "calibration_lines",
     "fewer_lines",
