@@ -148,6 +148,7 @@ def _parser(arguments: Sequence[str]) -> CommandLine:
         for name, line in inside.items():
             said = line[0].upper() + line[1:] + "."
             command = commands.add_parser(name, help=line, description=said)
+            command.given = arguments
             if name == called:
                 file = f"matstd.commands.{folder}.{name.replace('-', '_')}"
                 module = importlib.import_module(file)

@@ -23,12 +23,8 @@ _OURS = {
 class CommandLine(argparse.ArgumentParser):
     """A parser whose refusals are one line, with what may be meant."""
 
-    given: Sequence[str] = ()  # the words of this call
-
-    def parse_known_args(self, args=None, namespace=None):  # type: ignore[no-untyped-def,override]
-        """As in argparse, which looks for missing options before it knows the unknown ones."""
-        self.given = list(args or ())
-        return super().parse_known_args(args, namespace)
+    # words of the call: argparse asks for what is missing before it sees what it does not know
+    given: Sequence[str] = ()
 
     def error(self, message: str) -> NoReturn:
         """Refuse, exit code 2."""

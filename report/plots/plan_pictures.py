@@ -30,7 +30,7 @@ def draw_setup(plan: TouchPlan) -> Figure:
     edge = apply(table.T_face_solid, _outline(table.plate))
     is_wide = np.ptp(edge[:, :2], axis=0).max() > LARGE_TABLE * (high - low).max()
     panels = [["top", "side"], ["top", "whole" if is_wide else "side"]]
-    drawn_on = drawn.subplot_mosaic(panels, width_ratios=(1.5, 1.0), height_ratios=(1.7, 1.0))
+    drawn_on: Any = drawn.subplot_mosaic(panels, width_ratios=(1.5, 1.0), height_ratios=(1.7, 1.0))
     top, side = drawn_on["top"], drawn_on["side"]
     if is_wide:
         _whole_table(drawn_on["whole"], edge, base)
