@@ -3,6 +3,7 @@
 import ast
 import importlib
 import re
+import runpy
 import subprocess
 import sys
 import tomllib
@@ -312,6 +313,13 @@ def test_prose_lives_in_the_report(room: str) -> None:
             assert found, f"{name} has no prose any more: take it off the list"
         else:
             assert not found, f"{name}: {found}"
+
+
+def test_benchmarks_are_run_by_their_names() -> None:
+    runs = runpy.run_path(str(ROOT / "benchmarks" / "__main__.py"))
+    assert all((ROOT / "benchmarks" / f"{name}.py").exists() for name in runs["RUNS"])
+    with pytest.raises(SystemExit, match=r"jacobian: no benchmark; expected one of .* jacobians, "):
+        runs["main"](["jacobian"])
 
 
 @pytest.mark.parametrize("folder", ["examples", "benchmarks"])
