@@ -197,7 +197,7 @@ def test_contact_agrees_with_bisection_on_the_distance():
     # the distance by scipy's bounded minimiser from the best of a fine grid
     patch = wavy(11)
     rng = np.random.default_rng(12)
-    uv = inside(patch, rng, 6, margin=4.0)
+    uv = inside(patch, rng, 3, margin=4.0)
     n = patch.normal(uv)
     d = -(n + 0.5 * rng.normal(size=n.shape))
     d /= np.linalg.norm(d, axis=1, keepdims=True)

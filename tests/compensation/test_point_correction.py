@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from bench import LENGTH, oracle_tip
+from marks import slow
 
 from matstd.compensation.field.inverse import correction
 from matstd.compensation.field.machine_errors import MachineErrors
@@ -40,7 +41,9 @@ def test_a_datum_is_left_alone(known, datum):
     assert np.abs(here.at(datum.q.tolist())).max() < here.interpolation
 
 
-@pytest.mark.parametrize("name", ["head-table", "gantry", "trunnion", "horizontal", "vertical"])
+@pytest.mark.parametrize(
+    "name", ["gantry", "vertical", "head-table", *slow("trunnion", "horizontal")]
+)
 def test_every_chain_is_corrected_as_by_arrays(name):
     chain = read_machine(MACHINES / f"{name}-machine.toml")
     rng = np.random.default_rng(5)

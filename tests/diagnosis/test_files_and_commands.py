@@ -422,7 +422,7 @@ def few(change):
         (few(with_value("T_spindle_degC", "nan")), "before and after it are joined by a line"),
         (few(lambda rows: [rows[0], *rows]), "1 row stands twice; copies are left out"),
         (few(backwards), "time_s goes back"),
-        (lambda rows: rows[:26], "only 1 pose"),
+        (lambda rows: rows[:13], "only 1 pose"),
         (lambda rows: rows[:60], "60 touches for"),
     ],
     ids=["constant sensor", "gap in a sensor", "copy", "clock", "one pose", "few touches"],

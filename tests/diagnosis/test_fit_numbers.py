@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from marks import slow
 
 from matstd.diagnosis.fit.identification import fit_run
 from matstd.diagnosis.regression.linear import left_out, solve
@@ -111,7 +112,7 @@ def test_rows_marked_as_held_out_teach_nothing(case) -> None:
     assert fits[0].standardised_test_rms == pytest.approx(0.6 * UM, rel=SIGMAS / np.sqrt(2.0 * n))
 
 
-@pytest.mark.parametrize("seed", [3, 4, 5])
+@pytest.mark.parametrize("seed", [3, *slow(4, 5)])
 def test_chips_are_found_reported_and_kept_out(case, fitted, seed) -> None:
     """Chips of 15 to 60 um at a noise below 0.85 um: all of them, and hardly ever another row."""
     run, truth = case(seed, "hsm600u", (), True)
@@ -151,7 +152,7 @@ def test_noise_wrongly_stated_is_recognised(case, factor) -> None:
     assert remark.found / remark.stated == fit.noise.factor
 
 
-@pytest.mark.parametrize("seed", [3, 4, 5])
+@pytest.mark.parametrize("seed", [3, *slow(4, 5)])
 def test_noise_of_hard_cases_is_found_beside_chips(case, fitted, seed) -> None:
     truth, noise = case(seed, "hsm600u", (), True)[1], fitted(seed, "hsm600u", (), True).noise
     assert noise.factor * 0.6 == pytest.approx(
