@@ -321,7 +321,7 @@ def test_temperatures_by_the_clock_come_with_the_run(logged):
 
 def test_a_planted_effect_is_found_and_named(folder, golden, small):
     """Planted by its own formula in the exact machine, found by the diagnosis from the run file."""
-    wanted = golden.requests(small, each=14)
+    wanted = golden.requests(small, each=8)
     options = PlanOptions(tolerated=len(wanted))
     plan = plan_touches(small, golden.machine(), Probe(), golden.setup(), wanted, options)
     made = make_programs(plan)
