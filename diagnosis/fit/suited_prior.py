@@ -130,8 +130,10 @@ def _evidence(G: Array, g: Array, square: float, count: int, factor: Array) -> f
 
 def widening(effects: Sequence[Effect], factor: float) -> Array:
     """Factor on the prior of every parameter, (P, 1): none where its size was chosen already."""
-    shrunk = [traits(e).is_shrunk for e in effects]
-    each = np.repeat(shrunk, [len(e.parameters) for e in effects])
+    counts = [len(e.parameters) for e in effects]
+    if factor == 1.0:  # most fits
+        return np.ones((sum(counts), 1))
+    each = np.repeat([traits(e).is_shrunk for e in effects], counts)
     return np.where(each, 1.0, factor)[:, None]
 
 

@@ -48,12 +48,14 @@ def is_of_readings(effect: Effect) -> bool:
 
     A kink that a parabola straightens elsewhere is no error by itself, and neither is the parabola.
     """
-    own = traits(effect)
+    if is_geometry(effect):
+        return True
     law = law_of(effect)
     if law is not None:
         symbol = law.carrier.symbol
         return symbol is not None and {f.driver.name for f in law.factors} == {symbol.link}
-    return is_geometry(effect) or (own.is_table and own.reversal is None)
+    own = traits(effect)
+    return own.is_table and own.reversal is None
 
 
 def geometric_effects(fit: Fit) -> Iterator[tuple[int, Effect]]:
