@@ -124,7 +124,7 @@ def test_axes_of_one_direction_are_no_fault() -> None:
 
 
 def test_missing_and_cut_off(tmp_path: Path) -> None:
-    with pytest.raises(BadFile, match="No such file"):
+    with pytest.raises(BadFile, match="no such file"):
         read_machine(tmp_path / "none.toml")
     cut = tmp_path / "cut.toml"
     cut.write_text(MACHINE[: len(MACHINE) // 3])
