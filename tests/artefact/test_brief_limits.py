@@ -73,6 +73,13 @@ def project(tmp_path: Path, text: str) -> Path:
     return path
 
 
+def test_as_few_touches_as_allowed_are_taken(tmp_path):
+    text = "[standard]\nposes = 10\ntouches = {}\n"
+    assert read_project(project(tmp_path, text.format(100))).options.choice.touches == 100
+    with pytest.raises(BadFile, match=r"standard\.touches: found 99, expected .*100"):
+        read_project(project(tmp_path, text.format(99)))
+
+
 def test_all_limits_are_named_at_once_with_the_keys_of_the_file(tmp_path):
     text = "[workshop.table]\ndiameter_mm = 40.0\n[blank]\nbase_mm = [30.0, 30.0]\n"
     with pytest.raises(BadFile) as caught:

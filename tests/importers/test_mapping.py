@@ -75,6 +75,16 @@ def test_a_row_of_five_probes_is_as_many_rows_of_one_pose(folder, capsys):
     assert run.touches.normal[3].tolist() == [1.0, 0.0, 0.0]
 
 
+def test_a_row_with_one_reading_is_one_row(folder):
+    """Without `[[rows]]`; one cell of its column is empty."""
+    head, first, _ = MAP.replace('"X1 [µm]"', '"Y1 [µm]"').split("[[rows]]\n")
+    (folder / "map.toml").write_text(head + first, encoding="utf-8")
+    text, left_out = mapped_run(read_sheet(folder / "table.csv"), folder / "map.toml")
+    rows = [line for line in text.splitlines() if not line.startswith("#")]
+    assert (len(rows), left_out) == (1 + 2, 1)
+    assert [row.split(",")[rows[0].split(",").index("dev_um")] for row in rows[1:]] == ["2", "4"]
+
+
 @pytest.mark.parametrize(
     ("old", "new", "found"),
     [

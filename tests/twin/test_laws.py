@@ -5,7 +5,7 @@ import pytest
 from made_up import made_up
 
 from matstd.twin.errors import UnknownEffect
-from matstd.twin.laws import SHAPES, drivers, grid, play, shapes_of
+from matstd.twin.laws import SHAPES, driver_of, drivers, grid, play, shapes_of
 from matstd.twin.library import owner_of, parse_effect
 from matstd.twin.model import columns
 from matstd.twin.units import UM
@@ -72,6 +72,19 @@ def test_a_bump_lifts_by_its_amplitude_along_the_normal() -> None:
     per_mm = touches.signature.of(touches.chain.twist_of(touches.chain.symbol("EZY")))
     found = columns([law], touches)[:, 0] * 10.0 * UM
     assert found == pytest.approx(10.0 * UM * np.exp(-(((y - 20.0) / 50.0) ** 2)) * per_mm)
+
+
+def test_a_linear_axis_is_counted_from_the_middle_in_half_travels(chain) -> None:
+    low, high = chain.link("X").range
+    x, c, sensor = (driver_of(name, chain) for name in ("X", "C", "T-spindle"))
+    assert (x.nature, x.unit, x.zero, x.scale) == (
+        "linear",
+        "mm",
+        (low + high) / 2,
+        (high - low) / 2,
+    )
+    assert (c.nature, c.unit, c.zero, c.scale) == ("rotary", "rad", 0.0, 1.0)
+    assert (sensor.nature, sensor.unit, sensor.zero) == ("level", "degC", 20.0)
 
 
 def test_names_that_mean_nothing_are_refused() -> None:
