@@ -12,7 +12,7 @@ import numpy as np
 
 from matstd.diagnosis.answer.alike import periods_alike
 from matstd.diagnosis.answer.ambiguity import ConfusionClass, confusion_class
-from matstd.diagnosis.evidence import Grid, ScaledEffect, score_all, signatures
+from matstd.diagnosis.evidence import ScaledEffect
 from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.residual import find_structure
 from matstd.diagnosis.search import (
@@ -21,8 +21,8 @@ from matstd.diagnosis.search import (
     Verified,
     follows_driver,
     is_own_sensor,
+    likeliest_drift,
     refined,
-    unrecorded,
 )
 from matstd.twin.model import Effect, original_of, traits
 
@@ -125,15 +125,9 @@ def odds_against_drift(state: SearchState) -> dict[str, float]:
 
     The most likely law of such a driver stands in its place, with any smooth course in time.
     """
-    complement, members = state.pool.complement, state.chosen.members
-    led = [m for m in members if follows_driver(m.effect)]
-    rivals = unrecorded(complement.touches) if led else []
-    if not rivals:
-        return {}
-    drifts = signatures(complement, [Grid(one, (one,), 1) for one in rivals], 1)
     out = {}
-    for member in led:
-        others = state.search.evaluate(state.chosen.others(member)).effects
-        best = float(score_all(others, drifts).evidence.max())
-        out[member.effect.name] = state.chosen.effects.evidence - best
+    for member in (m for m in state.chosen.members if follows_driver(m.effect)):
+        drift = likeliest_drift(state.search.evaluate(state.chosen.others(member)).effects)
+        if drift is not None:
+            out[member.effect.name] = state.chosen.effects.evidence - drift[1]
     return out

@@ -8,7 +8,7 @@ asks for, `screening` what makes long runs affordable, `edges` gross errors that
 
 from matstd.diagnosis.search.further_parts import tables_along
 from matstd.diagnosis.search.members import EffectSubset, Member, Verified, explained
-from matstd.diagnosis.search.missing_driver import follows_driver, is_own_sensor, unrecorded
+from matstd.diagnosis.search.missing_driver import follows_driver, is_own_sensor, likeliest_drift
 from matstd.diagnosis.search.refine import refined, refined_set
 from matstd.diagnosis.search.screening import MOST_SETS, WHOLE_BELOW, Budget, Library
 from matstd.diagnosis.search.search_loop import (
@@ -40,11 +40,11 @@ __all__ = [
     "follows_driver",
     "is_own_sensor",
     "is_series",
+    "likeliest_drift",
     "most_evident",
     "refined",
     "refined_named",
     "refined_set",
     "searched",
     "tables_along",
-    "unrecorded",
 ]

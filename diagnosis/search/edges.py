@@ -1,4 +1,4 @@
-"""Gross errors that effects may explain: all touches on one side of a slip, poses predicted again.
+"""Gross errors that a slip may explain: all touches on one side of it.
 
 A standard that slips two touches before the end of its set-up leaves two touches that no other
 agrees with. As accidents they would lie anywhere; where that is too unlikely they are put back into
@@ -11,10 +11,8 @@ from dataclasses import replace
 import numpy as np
 
 from matstd.diagnosis.evidence import ScaledEffect
-from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.policy import POLICY
-from matstd.diagnosis.regression import BoolArray, GrossErrors, shots
-from matstd.diagnosis.search.task import DiagnosisTask
+from matstd.diagnosis.regression import BoolArray, GrossErrors
 from matstd.twin.frames import Array
 from matstd.twin.model import inner_values
 from matstd.twin.record import IntArray, Touches
@@ -88,29 +86,3 @@ def _by_chance(touches: int, gross: int, length: int, found: int) -> float:
     from scipy.stats import hypergeom  # half a second, and few runs need it
 
     return float(hypergeom.sf(found - 1, touches, gross, length))
-
-
-def restore_predicted_outliers(
-    task: DiagnosisTask, effects: Sequence[ScaledEffect], before: GrossErrors
-) -> Fit:
-    """The fit with effects; outliers that the effects predict are taken back into it.
-
-    Of an instrument that sees a target from afar (`shots`): a pose that its neighbours know little
-    of, as the only one of an arm far out, bends an effect in all its coordinates until it fits. It
-    returns if effects that were found without it, and fitted without it, say what it reads; where
-    they merely do not contradict it, it stays out. Single touches return as they like: of a drift
-    they are the first after a step, which what drives it explains.
-    """
-    whole = task.fit(effects)
-    shot = shots(task.run.touches)
-    is_several = np.bincount(shot)[shot] > 1
-    returned = before.rows & ~whole.gross.rows & is_several
-    if not returned.any():
-        return whole
-    without = task.fit(effects, before)
-    noise = without.noise.factor * task.run.u
-    missed = returned & (np.abs(without.residual) > before.limit * noise)
-    if not missed.any():
-        return whole
-    missed = returned & np.isin(shot, shot[missed])
-    return task.fit(effects, replace(whole.gross, rows=whole.gross.rows | missed))

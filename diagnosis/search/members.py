@@ -1,9 +1,8 @@
 """Sets of effects, and the tests that every member of a set must pass.
 
 A member stands if chance, its freedom and what it predicts speak for it, with all the others in
-place. What it predicts is asked three ways: of poses that were left out; of every instant as one
-observation, since x, y and z of a reflector share whatever the machine did in that pose; and of
-whole parts of the time and whole set-ups. A pose that is left out has neighbours that were touched
+place. What it predicts is asked twice: of poses that were left out, and of whole parts of the time
+and whole set-ups. A pose that is left out has neighbours that were touched
 with the same sensors at nearly the same temperatures: what merely follows a slow unknown between
 them predicts a pose, and fails where an hour is left out as a whole.
 """
@@ -16,7 +15,6 @@ import numpy as np
 from matstd.diagnosis.accuracy import domains
 from matstd.diagnosis.evidence import EffectSet, ResidualSpace, ScaledEffect, Signatures
 from matstd.diagnosis.policy import POLICY
-from matstd.diagnosis.regression import f_tail
 from matstd.diagnosis.search.missing_driver import is_unrecorded
 from matstd.twin.frames import Array
 from matstd.twin.model import Effect, is_tunable
@@ -24,10 +22,6 @@ from matstd.twin.record import IntArray
 
 LEFT_OUT = ("time_s", "setup")
 """Domains of which blocks are left out: an effect may act in one half of a travel alone."""
-
-MIN_SHARED_ROWS = 0.5
-"""Share of rows with the instant and readings of the row before, from which rows of an instant are
-grouped."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -103,8 +97,7 @@ class Verified:
         touches: Effective number it explains, ``(sum d^2)^2 / sum d^4`` of what it changes.
         domain_density: Least gain of the log predictive density over domains of which blocks are
             left out (parts of the time, set-ups).
-        is_possible: Whether no coefficient of expansion is of a body that shrinks when it warms,
-            and no driver that was not recorded is more likely.
+        is_preferred: Whether no driver that was not recorded is more likely.
     """
 
     member: Member
@@ -114,14 +107,14 @@ class Verified:
     density: float = 0.0
     touches: float = 0.0
     domain_density: float = 0.0
-    is_possible: bool = True
+    is_preferred: bool = True
 
     @property
     def stands(self) -> bool:
         """Whether all tests are passed."""
         if is_unrecorded(self.member.effect):  # it predicts nothing, so no other hour either
             return self.stands_by_poses
-        return self.stands_by_poses and self.is_possible and self.domain_density > 0.0
+        return self.stands_by_poses and self.is_preferred and self.domain_density > 0.0
 
     @property
     def stands_by_poses(self) -> bool:
@@ -169,36 +162,6 @@ def tested(others: EffectSet, whole: EffectSet, quick: Verified) -> Verified:
 def by_blocks(effects: EffectSet, groups: tuple[IntArray, ...]) -> EffectSet:
     """The set with other rows held out together."""
     return EffectSet(replace(effects.complement, groups=groups), effects.A)
-
-
-def p_by_instants(others: EffectSet, whole: EffectSet) -> float:
-    """Probability by chance of what an effect explains, one variant, no correction; 0 for no say.
-
-    ``F = g^T G^-1 g / tr(G^-1 V)`` of k and M - k degrees of freedom, with D the columns beside the
-    others, ``G = D^T D``, ``g = D^T r``, and V the sum over M instants of the squares of
-    ``D_m^T e_m``, e the errors of what was held out. Only where every instant is held out by
-    itself: stretches of a log that are held out as a whole say how far an effect reaches.
-
-    Reference:
-        Liang and Zeger, Biometrika 73 (1986) 13-22 (estimates of variance from clusters).
-    """
-    space = whole.complement
-    q, t = space.touches.q[space.used], space.touches.time[space.used]
-    begins = np.r_[True, np.any(np.diff(q, axis=0) != 0.0, axis=1) | (np.diff(t) != 0.0)]
-    first = np.flatnonzero(begins)
-    added = whole.A.shape[1] - others.A.shape[1]
-    freedom = len(first) - added
-    is_shared = len(first) <= (1.0 - MIN_SHARED_ROWS) * len(q)
-    if not is_shared or freedom < 1 or len(first) > len(space.groups):
-        return 0.0
-    D = whole.A - others.A @ others.coefficients(whole.A) if others.A.shape[1] else whole.A
-    error = whole.held_out.error
-    each = np.add.reduceat(D[: len(error)] * error[:, None], first, axis=0)
-    inverse = np.linalg.pinv(D.T @ D, rcond=1e-9, hermitian=True)  # of the others nothing is left
-    g = D.T @ others.residual
-    explained = float(g @ inverse @ g)
-    scatter = float(np.einsum("mi,ij,mj->", each, inverse, each))
-    return float(f_tail(explained / max(scatter, 1e-300), added, freedom))
 
 
 def single(pool: Signatures, variant: int) -> Signatures:

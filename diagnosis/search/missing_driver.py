@@ -15,6 +15,14 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
+from matstd.diagnosis.evidence import (
+    EffectSet,
+    Grid,
+    ScaledEffect,
+    ranked,
+    score_all,
+    signatures,
+)
 from matstd.twin.frames import Array
 from matstd.twin.library import proposals
 from matstd.twin.model import Effect, Parameter, Term, original_of, traits
@@ -102,6 +110,20 @@ def unrecorded(touches: Touches) -> list[Unrecorded]:
     rising = T_REF + half_wave(touches, 1)
     known = replace(touches, temperature={SENSOR: rising})
     return [Unrecorded(law, k) for law in proposals(known, AT_ONCE) for k in COURSES]
+
+
+def likeliest_drift(others: EffectSet) -> tuple[ScaledEffect, float] | None:
+    """The likeliest law of a driver that was not recorded beside a set, and the evidence with it.
+
+    None where the run has no times.
+    """
+    laws = unrecorded(others.complement.touches)
+    if not laws:
+        return None
+    pool = signatures(others.complement, [Grid(one, (one,), 1) for one in laws], 1)
+    scores = score_all(others, pool)
+    best = ranked(scores.evidence)[0]
+    return ScaledEffect(laws[best], float(scores.scale[best])), float(scores.evidence[best])
 
 
 def is_unrecorded(effect: Effect) -> bool:

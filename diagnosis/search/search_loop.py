@@ -49,7 +49,6 @@ from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.residual import PatternTests, Shape, Structure, find_structure
 from matstd.diagnosis.search.edges import (
-    restore_predicted_outliers,
     unexplained_near_slip,
     without,
 )
@@ -133,11 +132,16 @@ class SearchState:
         return bool(self.remains) or noise > POLICY.noise_ratio_open
 
     @property
+    def named(self) -> EffectSet:
+        """The set without patterns that have no name."""
+        complement = self.library.complement
+        return EffectSet(complement, projected(complement, self.effects))
+
+    @property
     def held_out(self) -> float:
         """Error of poses left out by what was found, without patterns that have no name, mm."""
-        complement = self.library.complement
-        effects = EffectSet(complement, projected(complement, self.effects))
-        return rms(effects.held_out.error * complement.u)
+        effects = self.named
+        return rms(effects.held_out.error * effects.complement.u)
 
 
 def clearly_best(ways: Sequence[Way], error: Callable[[Way], float]) -> Way:
@@ -246,7 +250,7 @@ def _settled(
         library = Library.of(ResidualSpace.of(base), [*candidates, *nameless], progress)
         search, chosen = best_set(library, found, budget, progress)
         found = chosen.sized
-        whole = restore_predicted_outliers(task, (*added, *found), base.gross)
+        whole = task.fit((*added, *found))
         further = unexplained_near_slip(touches, whole.gross, found) & ~tried & (remaining > 1)
         is_same = np.array_equal(whole.gross.rows, base.gross.rows) and not further.any()
         if (is_same and not _is_quieter(whole, base)) or not remaining:

@@ -11,7 +11,6 @@ passes its tests (`members`) with the others in place.
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from functools import cached_property
-from itertools import count, islice
 
 import numpy as np
 
@@ -33,7 +32,6 @@ from matstd.diagnosis.search.members import (
     Member,
     Verified,
     explained,
-    p_by_instants,
     set_of,
     single,
     tested,
@@ -44,7 +42,7 @@ from matstd.diagnosis.search.missing_driver import (
     is_unrecorded,
     moves_alike,
 )
-from matstd.diagnosis.search.refine import refined, refined_set
+from matstd.diagnosis.search.refine import refined_set
 from matstd.diagnosis.search.screening import Budget
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain
@@ -54,14 +52,11 @@ from matstd.twin.thermal import drives
 MIN_CORRELATION_ALIKE = 0.95
 """Correlation of two fitted signatures from which only one of the sets is carried on."""
 
-MAX_CARRIED_SETS = 4
-"""Most sets that are carried from one size to the next."""
+MAX_TRIED_SETS = 4
+"""Most sets of one member more that are tried."""
 
 MAX_TURNS = 3
 """Most turns of growing a set and of refining it."""
-
-MAX_REFINED_DRIVERS = 4
-"""Most laws of recorded drivers that are refined beside one that was not recorded."""
 
 USUAL_SET_SIZE = 6
 """Effects at which a search is reported as nearly done; it continues while more pass."""
@@ -207,10 +202,9 @@ class Search:
         p = float(score_all(others.effects, member.signature).p[0])
         quick = Verified(
             member=member,
-            p_value=self.corrected(member, max(p, p_by_instants(others.effects, whole.effects))),
+            p_value=self.corrected(member, p),
             evidence=float(whole.effects.evidence - others.effects.evidence),
-            is_possible=self._is_possible(whole, member)
-            and self._is_preferred(others, whole, member),
+            is_preferred=self._is_preferred(others, whole, member),
         )
         return tested(others.effects, whole.effects, quick) if quick.is_beyond_chance else quick
 
@@ -230,24 +224,6 @@ class Search:
         rivals = self.scores(others).evidence[self._is_unrecorded]
         return bool(np.all(whole.evidence > rivals))
 
-    def _is_possible(self, whole: EffectSubset, member: Member) -> bool:
-        """Whether a body may expand as a member says, within its uncertainty.
-
-        Only the sign decides: a sensor far from the warm place shows a tenth of its warming, so a
-        coefficient may exceed that of every material.
-        """
-        at = 0 if self.fixed is None else self.fixed.shape[1]
-        at += sum(len(m.effect.parameters) for m in whole.members[: whole.members.index(member)])
-        effects = whole.effects
-        for k, parameter in enumerate(member.effect.parameters, start=at):
-            if parameter.unit == "1/K":
-                unit = parameter.sd * member.scale
-                margin = POLICY.impossible_ratio * unit * effects.spread(k)
-                alpha = unit * float(effects.phi[k])
-                if not -margin < alpha - POLICY.expansion_least:
-                    return False
-        return True
-
     # --- moves ------------------------------------------------------------------------------------
 
     def run(self, start: Sequence[Member] = ()) -> EffectSubset:
@@ -258,7 +234,7 @@ class Search:
         """
         best = self.backward(self.polished(self.evaluate(start)))
         for _ in range(MAX_TURNS):
-            grown = self.backward(self.against_refined_laws(self.grown(best)))
+            grown = self.backward(self.grown(best))
             best = self.backward(self.needed(self.refined(grown)))
             is_better = best.evidence > grown.evidence + POLICY.log_evidence_gain
             if best.names == grown.names and not is_better:
@@ -267,15 +243,12 @@ class Search:
 
     def grown(self, best: EffectSubset) -> EffectSubset:
         """A set with one member more and more, as long as every member stands."""
-        carried = [best]
-        for size in count(len(best.members) + 1):
-            if self.budget.is_spent:
-                break
-            grown = [s for c in carried for s in self.extensions(c, MAX_CARRIED_SETS)]
-            carried = self.kept(self.polished(s) for s in grown)
-            self.progress(min(size / USUAL_SET_SIZE, 1.0), "sets of effects")
-            better = [c for c in carried if c.evidence > best.evidence + POLICY.log_evidence_gain]
-            standing = next((c for c in better if self.stands(c)), None)
+        while not self.budget.is_spent:
+            self.progress(min(len(best.members) / USUAL_SET_SIZE, 1.0), "sets of effects")
+            least = best.evidence + POLICY.log_evidence_gain
+            larger = [self.polished(s) for s in self.extensions(best, MAX_TRIED_SETS)]
+            larger = sorted((s for s in larger if s.evidence > least), key=lambda s: -s.evidence)
+            standing = next((s for s in larger if self.stands(s)), None)
             if standing is None:
                 break
             best = standing
@@ -295,11 +268,6 @@ class Search:
                 directions.append(direction)
                 out.append(self.evaluate((*chosen.members, member)))
         return out
-
-    def kept(self, sets: Iterable[EffectSubset]) -> list[EffectSubset]:
-        """The few best of some sets, each once."""
-        unique = {tuple(sorted(m.key[:-1] for m in s.members)): s for s in sets}
-        return sorted(unique.values(), key=lambda s: -s.evidence)[:MAX_CARRIED_SETS]
 
     def polished(self, chosen: EffectSubset) -> EffectSubset:
         """Exchange members for better ones, one at a time, until none is better."""
@@ -329,20 +297,6 @@ class Search:
             whole = self.evaluate((*others.members, member))
             if others.members and not self.verified(whole, member).stands:
                 return others
-        return chosen
-
-    def against_refined_laws(self, chosen: EffectSubset) -> EffectSubset:
-        """The set with refined laws of recorded drivers for those of drivers that were not.
-
-        A driver that was not recorded has no grid, and would win by what the grid of a lag loses.
-        """
-        for drift in (m for m in chosen.members if is_unrecorded(m.effect)):
-            others = self.evaluate(chosen.others(drift))
-            laws = (v for v in self.ranking(others) if follows_driver(self.pool.variants[v]))
-            for variant in islice(laws, MAX_REFINED_DRIVERS):
-                law = refined(others.effects, self.pool.variants[variant])[0]
-                other = self.evaluate((*others.members, self.placed(law)))
-                chosen = max(chosen, other, key=lambda s: s.evidence)
         return chosen
 
     def backward(self, chosen: EffectSubset) -> EffectSubset:

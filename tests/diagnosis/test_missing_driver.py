@@ -14,7 +14,8 @@ from matstd.diagnosis.answer.ambiguity import Rival
 from matstd.diagnosis.answer.reported_set import ReportedSet
 from matstd.diagnosis.evidence import ScaledEffect
 from matstd.diagnosis.residual import Shape
-from matstd.diagnosis.search import follows_driver, unrecorded
+from matstd.diagnosis.search import follows_driver
+from matstd.diagnosis.search.missing_driver import unrecorded
 from matstd.twin.library import parse_effect, proposals
 from matstd.twin.model import columns
 from matstd.twin.record import Run
