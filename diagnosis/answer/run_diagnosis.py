@@ -18,6 +18,7 @@ from matstd.diagnosis.answer.remainder import (
     structures,
     to_repeat,
 )
+from matstd.diagnosis.answer.reported_set import ReportedSet
 from matstd.diagnosis.answer.steps import (
     Step,
     check_distinct,
@@ -139,10 +140,13 @@ def _diagnosed(
     task, final = search_with_memory(task, added, single, progress)
     if task.model.chain.joints:  # errors of their lines bend like effects that are missing
         task = task.suited((*added, *final.effects))
-    choice = chosen_by_prediction(task, added, final, library, progress)
+    progress(0.5, "what cannot be distinguished")
+    tested, steps = significant_effects(task, added, final)
+    choice = chosen_by_prediction(task, added, tested.state, library, progress)
     if choice is not None:
-        task, final = with_chosen_set(task, added, final, choice, single, progress)
-    result = _result(task, added, final, progress, rng)
+        task, final = with_chosen_set(task, added, tested.state, choice, single, progress)
+        tested, steps = significant_effects(task, added, final)
+    result = _result(task, added, tested, steps, progress, rng)
     if choice is None:
         return result
     fields = [e for e in result.found if traits(e).parameter_drives]
@@ -156,14 +160,13 @@ def _diagnosed(
 def _result(
     task: DiagnosisTask,
     added: tuple[ScaledEffect, ...],
-    final: SearchState,
+    tested: ReportedSet,
+    steps: tuple[Step, ...],
     progress: Progress,
     rng: np.random.Generator | None,
 ) -> Diagnosis:
     """The full report of the last round."""
-    progress(0.5, "what cannot be distinguished")
-    tested, steps = significant_effects(task, added, final)
-    final, classes, gross = tested.state, tested.classes, final.base.gross
+    final, classes, gross = tested.state, tested.classes, tested.state.base.gross
     left = _beyond_doubt(final.remains, steps[-1].fit)
     # a residual well below the stated uncertainty is allowed for, whatever pattern it has
     counted = () if _is_covered(steps[-1].fit) else left

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from matstd.diagnosis.choice.noise_memory import max_noise
-from matstd.diagnosis.choice.prediction import MAX_SETS_PER_BLOCK, Choice, ChoiceRule
+from matstd.diagnosis.choice.prediction import Choice, ChoiceRule
 from matstd.diagnosis.evidence import (
     EffectSet,
     Progress,
@@ -115,10 +115,8 @@ def field_shares(fit: Fit, effect: Effect) -> Noticed:
 
 
 def choice_remarks(choice: Choice, found: Sequence[Effect]) -> tuple[Remark, ...]:
-    """Every way of a choice with its plain error of blocks left out, and a limit that was met."""
+    """Every way of a choice with its plain error of blocks left out."""
     tried = tuple((rule.name, rule.error) for rule in choice.rules)
     way, blocks = choice.best.name, choice.blocks
     what = What.CHOSEN_BY_PREDICTION
-    chosen = noticed(what, chosen=way, blocks=blocks, tried=tried, is_empty=not found)
-    ended = noticed(What.SEARCH_ENDED, sets=MAX_SETS_PER_BLOCK)
-    return (chosen, ended) if choice.is_ended else (chosen,)
+    return (noticed(what, chosen=way, blocks=blocks, tried=tried, is_empty=not found),)

@@ -1,14 +1,15 @@
-"""Choice by prediction: of several ways to explain a run the one that predicts unseen rows best.
+"""Choice by prediction: does a body, or a field of all drives, predict what the search left open?
 
-A search finds what fits. Where sensors share what they know, or where something is left that no
-effect explains, what fits best need not predict best, and the error of held-out rows flatters a set
-that was chosen with all rows in sight. So every *way of choosing* is judged as a whole: block after
-block is left out, the choice is made anew on the rest, and the rows left out are predicted. The way
-with the smallest plain root mean square of those errors is then followed on all rows; and that
-figure, which has paid for the choice, is the error that is stated.
+A search adds one effect after the other and finds what fits. Where sensors share what they know,
+two lags of one drive or a field of all drives may predict better. So each of these *ways* is judged
+as a whole: block after block is left out, the way is followed anew on the rest, and the rows left
+out are predicted. The plain root mean square of those errors has paid for the choice, and is the
+error that is stated. In the same comparison stands what the search found, alone and with a driver
+that was not recorded, both found in sight of all rows; so another way takes their place only if it
+predicts far better.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -17,20 +18,11 @@ from matstd.diagnosis.accuracy import blocks
 from matstd.diagnosis.choice.bodies import bodies
 from matstd.diagnosis.choice.field import sized_field
 from matstd.diagnosis.choice.noise_memory import memory_of
-from matstd.diagnosis.choice.pruned import prune_by_held_out_error
-from matstd.diagnosis.evidence import Progress, ResidualSpace, ScaledEffect, quiet
+from matstd.diagnosis.evidence import Progress, ScaledEffect, quiet
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.regression import GrossErrors, Memory
-from matstd.diagnosis.search import (
-    Budget,
-    DiagnosisTask,
-    Library,
-    SearchState,
-    best_set,
-    clearly_best,
-)
-from matstd.twin.effects import repeat
+from matstd.diagnosis.search import DiagnosisTask, SearchState, clearly_best, likeliest_drift
 from matstd.twin.frames import Array
 from matstd.twin.library import proposals
 from matstd.twin.model import Effect, traits
@@ -38,16 +30,16 @@ from matstd.twin.numbers import rms
 from matstd.twin.record import IntArray, Touches
 from matstd.twin.thermal import drives, field
 
-MAX_SETS_PER_BLOCK = 300.0
-"""Sets that the search of one block may try: a fifth of what a whole diagnosis may."""
+NOTHING, FOUND, UNRECORDED = "nothing", "single effects", "unrecorded driver"
+TWO_TIMES, FIELD = "two time constants", "thermal field"
+"""Ways, the simplest first; an unrecorded driver is a smooth course in time beside what was found,
+and follows no sensor."""
 
-NOTHING, UNRECORDED, TWO_TIMES = "nothing", "unrecorded driver", "two time constants"
-SINGLE, FIELD = "single effects", "thermal field"
-"""Ways, the simplest first; an unrecorded driver is a smooth course in time, as the search found
-it, and follows no sensor."""
+Way = Callable[[DiagnosisTask], tuple[ScaledEffect, ...]]
+"""The set to which a way leads in a task."""
 
 MAX_ROWS = 4000
-"""Most rows used to judge ways of choosing, since each block needs a search of its own."""
+"""Most rows used to judge ways of choosing, each of which is followed once for every block."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -55,7 +47,7 @@ class ChoiceRule:
     """A way of choosing effects, judged.
 
     Attributes:
-        name: `nothing`, `unrecorded driver`, `two time constants`, `single effects`,
+        name: `nothing`, `single effects`, `unrecorded driver`, `two time constants`,
             `thermal field`.
         errors: Plain root mean square error of every block left out, the choice made anew each
             time, (B,), mm.
@@ -81,93 +73,12 @@ class Choice:
         rules: All that were judged, the simplest first.
         blocks: Number of blocks that were left out, one after the other.
         memory: Of what is left with it; None where it is white.
-        is_ended: Whether a search for single effects was ended by its limit, `MAX_SETS_PER_BLOCK`.
     """
 
     rules: tuple[ChoiceRule, ...]
     best: ChoiceRule
     blocks: int
     memory: Memory | None
-    is_ended: bool = False
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _Ways:
-    """Ways of choosing that the candidates leave open.
-
-    Attributes:
-        added: What the user added, which is in every set.
-        drifts: Laws of drivers that were not recorded.
-        single: Candidates but the field.
-        warm: A field of all drives.
-        groups: Rows of the run in every block.
-        budgets: Of searches, so that a limit that was met is reported.
-    """
-
-    added: tuple[ScaledEffect, ...]
-    gross: GrossErrors
-    drifts: tuple[ScaledEffect, ...]
-    single: tuple[Effect, ...]
-    warm: Effect | None
-    groups: tuple[IntArray, ...]
-    budgets: list[Budget]
-
-    @property
-    def names(self) -> list[str]:
-        """All of them, the simplest first."""
-        has_lags = {"thermal-lag", "thermal-static"} <= {e.kind for e in self.single}
-        is_open = {
-            NOTHING: True,
-            UNRECORDED: bool(self.drifts),
-            TWO_TIMES: has_lags,
-            SINGLE: bool(self.single),
-            FIELD: self.warm is not None,
-        }
-        return [name for name, is_so in is_open.items() if is_so]
-
-    def followed(self, name: str, task: DiagnosisTask) -> tuple[ScaledEffect, ...]:
-        """The set to which a way leads in a task."""
-        if name == TWO_TIMES:
-            return bodies(task, self.added, self.gross)
-        if name == SINGLE:
-            return self._single_effects(task)
-        if name == FIELD and self.warm is not None:
-            return (sized_field(task, self.added, self.gross, self.warm, self.groups),)
-        return self.drifts if name == UNRECORDED else ()
-
-    def judged(
-        self, name: str, task: DiagnosisTask, found: tuple[ScaledEffect, ...] | None = None
-    ) -> ChoiceRule:
-        """A way with its error of every block, predicted by a choice made without it.
-
-        Args:
-            found: A set that stays what it is, in the place of such a choice.
-        """
-        errors = []
-        for group in self.groups:
-            part = without(task, group)
-            effects = self.followed(name, part) if found is None else found
-            left = part.fit((*self.added, *effects), self.gross).residual[group]
-            errors.append(rms(left))
-        whole = self.followed(name, task) if found is None else found
-        return ChoiceRule(name, whole, np.array(errors), np.array([len(g) for g in self.groups]))
-
-    def _single_effects(self, task: DiagnosisTask) -> tuple[ScaledEffect, ...]:
-        """Single effects by search, then those with inner parameters once more beside themselves.
-
-        Each must lower the error of blocks left out.
-        """
-        complement = ResidualSpace.of(task.fit(self.added, self.gross))
-        found: tuple[ScaledEffect, ...] = ()
-        more: list[Effect] = []
-        for _ in range(2):
-            library = Library.of(complement, [*self.single, *more])
-            self.budgets.append(Budget(MAX_SETS_PER_BLOCK))
-            found = best_set(library, found, self.budgets[-1])[1].sized
-            more = [a for s in found if (a := repeat(s.effect)) is not None]
-            if not more:
-                break
-        return prune_by_held_out_error(complement, found, self.groups)
 
 
 def chosen_by_prediction(
@@ -177,10 +88,13 @@ def chosen_by_prediction(
     candidates: Sequence[Effect],
     progress: Progress = quiet,
 ) -> Choice | None:
-    """The way that predicts best, or None where there is nothing to choose.
+    """The way that predicts best, or None where that is what the search found.
 
-    There is where structure is left, or noise with memory that is larger than stated, what is left
-    is slow, and the run recorded something that may drive it.
+    There is something to choose where structure is left, or noise with memory that is larger than
+    stated, what is left is slow, and the run recorded something that may drive it.
+
+    Args:
+        final: What was found, as it would be reported.
     """
     remembers, gross = task.memory is not None, final.base.gross
     noise = task.fit((*added, *final.effects), gross).noise.factor
@@ -195,34 +109,52 @@ def chosen_by_prediction(
         return None
     task = thinned(task, fit)
     fit = task.fit((*added, *final.effects), gross)
-    ways = _Ways(
-        added=added,
-        gross=gross,
-        drifts=final.drifts,
-        single=tuple(e for e in candidates if not traits(e).is_shrunk),
-        warm=next((e for e in candidates if traits(e).is_shrunk), None),
-        groups=blocks(fit, memory_of(fit)[0]),
-        budgets=[],
-    )
+    groups = blocks(fit, memory_of(fit)[0])
+    found = final.effects
+    drift = likeliest_drift(final.named)
+    drifts = final.drifts or ([drift[0]] if drift else [])
+    ways: dict[str, Way] = {
+        NOTHING: lambda _: (),
+        FOUND: lambda _: found,
+        UNRECORDED: lambda _: (*found, *drifts),
+    }
+    if {"thermal-lag", "thermal-static"} <= {e.kind for e in candidates}:
+        ways[TWO_TIMES] = lambda part: bodies(part, added, gross)
+    if (warm := next((e for e in candidates if traits(e).is_shrunk), None)) is not None:
+        ways[FIELD] = lambda part: (sized_field(part, added, gross, warm, groups),)
     rules = []
-    for done, name in enumerate(ways.names):
-        progress(done / len(ways.names), "choice by prediction")
-        rules.append(ways.judged(name, task))
-    best = clearly_best(rules, lambda rule: rule.error)
-    if best.name == UNRECORDED:
+    for done, (name, way) in enumerate(ways.items()):
+        progress(done / len(ways), "choice by prediction")
+        rules.append(_judged(name, way, task, added, gross, groups))
+    best = clearly_best(rules[:3], lambda rule: rule.error)
+    other = clearly_best(rules[3:] or rules[:1], lambda rule: rule.error)
+    if other.error < POLICY.error_share_in_sight * best.error:
+        best = other
+    if best.name in (FOUND, UNRECORDED) or (best is rules[0] and not found):
         return None
-    if remembers:
-        searched = ways.judged(SINGLE, task, final.effects)
-        if best.error > POLICY.error_share_beside_memory * searched.error:
-            return None
     left = memory_of(task.fit((*added, *best.effects), gross))
     return Choice(
         rules=tuple(rules),
         best=best,
-        blocks=len(ways.groups),
+        blocks=len(groups),
         memory=left[0] if left[1] >= POLICY.memory_gain else None,
-        is_ended=any(b.is_spent for b in ways.budgets),
     )
+
+
+def _judged(
+    name: str,
+    way: Way,
+    task: DiagnosisTask,
+    added: tuple[ScaledEffect, ...],
+    gross: GrossErrors,
+    groups: Sequence[IntArray],
+) -> ChoiceRule:
+    """A way with its error of every block, predicted by what it leads to without that block."""
+    errors = []
+    for group in groups:
+        part = without(task, group)
+        errors.append(rms(part.fit((*added, *way(part)), gross).residual[group]))
+    return ChoiceRule(name, way(task), np.array(errors), np.array([len(g) for g in groups]))
 
 
 def candidate_effects(touches: Touches) -> list[Effect]:

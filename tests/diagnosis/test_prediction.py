@@ -21,7 +21,6 @@ from matstd.diagnosis.choice.bodies import bodies
 from matstd.diagnosis.choice.chosen_set import with_chosen_set
 from matstd.diagnosis.choice.field import PRIOR_SIZES, sized_field
 from matstd.diagnosis.choice.prediction import Choice, candidate_effects, without
-from matstd.diagnosis.choice.pruned import prune_by_held_out_error
 from matstd.diagnosis.evidence.effect_signatures import ResidualSpace, ScaledEffect, projected
 from matstd.diagnosis.evidence.evidence import EffectSet
 from matstd.diagnosis.fit.identification import fit_run
@@ -170,30 +169,6 @@ def test_a_long_run_is_judged_by_an_even_choice_of_its_instants(monkeypatch) -> 
     assert len(kept) == N // 2
     assert np.all(np.unique(kept, return_counts=True)[1] == 2)
     assert np.ptp(np.diff(np.unique(kept))) == 0.0
-
-
-def test_an_effect_that_predicts_nothing_is_not_needed() -> None:
-    run = record()
-    task = task_of(run)
-    gross = replace(task.fit().gross, rows=np.zeros(N, dtype=bool))
-    complement = ResidualSpace.of(task.fit((), gross))
-    frame = ScaledEffect(parse_effect("thermal-static(EZZ,frame)", run.touches.chain), 4.0)
-    idle = ScaledEffect(parse_effect("thermal-lag(EZZ,bed)#2", run.touches.chain).tuned(1e7), 16.0)
-    groups = np.array_split(np.arange(N), 5)
-    kept = prune_by_held_out_error(complement, [frame, idle], groups)
-    assert [s.effect.name for s in kept] == ["thermal-static(EZZ,frame)"]
-
-
-def test_a_second_effect_without_a_first_takes_its_name() -> None:
-    run = record()
-    task = task_of(run)
-    gross = replace(task.fit().gross, rows=np.zeros(N, dtype=bool))
-    complement = ResidualSpace.of(task.fit((), gross))
-    alone = ScaledEffect(
-        parse_effect("thermal-lag(EZZ,frame)#2", run.touches.chain).tuned(120.0), 4.0
-    )
-    (kept,) = prune_by_held_out_error(complement, [alone], np.array_split(np.arange(N), 5))
-    assert kept.effect.name == "thermal-lag(EZZ,frame)"
 
 
 @pytest.fixture(scope="module")

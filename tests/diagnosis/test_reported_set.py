@@ -14,7 +14,7 @@ from matstd.diagnosis.answer.ambiguity import ConfusionClass, Rival
 from matstd.diagnosis.answer.reported_set import reported_set
 from matstd.diagnosis.answer.steps import left_by
 from matstd.diagnosis.choice.chosen_set import choice_remarks
-from matstd.diagnosis.choice.prediction import MAX_SETS_PER_BLOCK, Choice, ChoiceRule
+from matstd.diagnosis.choice.prediction import Choice, ChoiceRule
 from matstd.diagnosis.files.diagnosis_file import choice_table
 from matstd.diagnosis.files.model_file import read_model
 from matstd.diagnosis.files.model_writer import model_text
@@ -22,7 +22,6 @@ from matstd.diagnosis.fit.identification import fit_run
 from matstd.diagnosis.fit.learnt_fit import Learnt
 from matstd.diagnosis.fit.prior import Prior
 from matstd.diagnosis.regression.memory import Memory
-from matstd.diagnosis.remarks import What, noticed
 from matstd.diagnosis.search import search_loop
 from matstd.diagnosis.search.task import DiagnosisTask
 from matstd.report.words.diagnosis_words import figures, number_words
@@ -222,17 +221,15 @@ def test_left_by_is_the_share_that_others_cannot_imitate() -> None:
 # --- a choice by prediction ---------------------------------------------------------------------
 
 
-def test_ways_of_a_choice_are_reported_with_the_limit_that_was_met() -> None:
+def test_ways_of_a_choice_are_reported_with_their_errors() -> None:
     nothing = ChoiceRule("nothing", (), np.array([3.0, 4.0]) * UM, np.array([10, 30]))
-    way = ChoiceRule("single effects", (), np.array([1.0, 1.0]) * UM, np.array([10, 30]))
-    choice = Choice((nothing, way), way, 2, None, is_ended=True)
-    remark, ended = choice_remarks(choice, [])
+    way = ChoiceRule("thermal field", (), np.array([1.0, 1.0]) * UM, np.array([10, 30]))
+    choice = Choice((nothing, way), way, 2, None)
+    (remark,) = choice_remarks(choice, [])
     plain = np.sqrt((10 * 3.0**2 + 30 * 4.0**2) / 40)
     assert [error / UM for _, error in remark.tried] == pytest.approx([plain, 1.0])
-    assert ended == noticed(What.SEARCH_ENDED, sets=MAX_SETS_PER_BLOCK)
-    assert len(choice_remarks(replace(choice, is_ended=False), [])) == 1
     table = choice_table(choice)
-    assert (table["chosen"], table["blocks"]) == ("single effects", 2)
+    assert (table["chosen"], table["blocks"]) == ("thermal field", 2)
     assert [w["held_out_um"] for w in table["ways"]] == pytest.approx([plain, 1.0], rel=1e-5)
 
 
