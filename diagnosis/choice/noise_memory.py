@@ -22,13 +22,6 @@ from matstd.twin.record import Run
 CHOSEN_ROWS = 3000
 """Rows of the choice: a wave of an eighth of the noise is found in so many."""
 
-MAX_TURNS = 3
-"""Searches in which effects and memory settle beside one another."""
-
-SETTLED_CHANGE = 0.1
-"""Change of a memory, as atanh of its correlation, below which it has settled: its uncertainty in a
-run of a hundred touches."""
-
 
 def memory_of(fit: Fit) -> tuple[Memory, float]:
     """Memory of what a fit in white noise leaves, and its gain of log likelihood over none."""
@@ -38,42 +31,6 @@ def memory_of(fit: Fit) -> tuple[Memory, float]:
 def is_noise(memory: Memory, rows: int) -> bool:
     """Whether a run of so many rows holds enough of a memory to call it one of the noise."""
     return rows >= POLICY.memory_independent * memory.per_independent
-
-
-def with_noise_memory(
-    task: DiagnosisTask,
-    added: tuple[ScaledEffect, ...],
-    final: SearchState,
-    candidates: Sequence[Effect],
-    progress: Progress = quiet,
-) -> tuple[DiagnosisTask, SearchState]:
-    """The task and its result with memory in the noise, or unchanged where there is none.
-
-    Memory and effects settle beside one another: beside too few effects what they do passes for a
-    memory, beside too many they absorb it.
-    """
-    best = (_evidence(final), task, final)
-    tried = [0.0]
-    for beside in _beside(final):
-        effects = beside
-        for _ in range(MAX_TURNS):
-            memory = memory_beside(task, (*added, *effects), final.base.gross)
-            at = 0.0 if memory is None else float(np.arctanh(memory.correlation))
-            if memory is None or min(abs(at - t) for t in tried) < SETTLED_CHANGE:
-                break
-            tried.append(at)
-            other = replace(task, memory=memory)
-            found = searched(other, added, candidates, progress)
-            if found.base.noise.factor > max_noise(found.effects):
-                break
-            best = max(best, (_evidence(found), other, found), key=lambda b: b[0])
-            effects = found.effects
-    return best[1], best[2]
-
-
-def _beside(final: SearchState) -> list[tuple[ScaledEffect, ...]]:
-    """Sets beside which a memory is looked for: what was found, and where much is left, nothing."""
-    return [final.effects, ()] if final.effects and final.remains else [final.effects]
 
 
 def memory_beside(
@@ -106,15 +63,26 @@ def search_with_memory(
     candidates: Sequence[Effect],
     progress: Progress = quiet,
 ) -> tuple[DiagnosisTask, SearchState]:
-    """The search's result, and the task with the memory found in the noise."""
-    if len(task.run) <= WHOLE_BELOW:
-        final = searched(task, added, candidates, progress)
-        return with_noise_memory(task, added, final, candidates, progress)
-    small = replace(task, run=chosen_rows(task.run))
-    start = search_with_memory(small, added, candidates, progress)[1].effects
-    whole = replace(task, memory=memory_beside(task, (*added, *start)))
-    final = searched(whole, added, candidates, progress, start)
-    return whole, final
+    """The search's result, and the task with the memory found in the noise.
+
+    A run of ordinary length is searched in white noise, and once more beside the memory that this
+    search leaves, if it leaves one: the likelier result stands. A long run is searched once, beside
+    the memory that such a search of a choice of its rows leaves.
+    """
+    if len(task.run) > WHOLE_BELOW:
+        small = replace(task, run=chosen_rows(task.run))
+        start = search_with_memory(small, added, candidates, progress)[1].effects
+        task = replace(task, memory=memory_beside(task, (*added, *start)))
+        return task, searched(task, added, candidates, progress, start)
+    final = searched(task, added, candidates, progress)
+    memory = memory_beside(task, (*added, *final.effects), final.base.gross)
+    if memory is not None:
+        beside = replace(task, memory=memory)
+        found = searched(beside, added, candidates, progress)
+        is_noise = found.base.noise.factor <= max_noise(found.effects)
+        if is_noise and _evidence(found) > _evidence(final):
+            return beside, found
+    return task, final
 
 
 def chosen_rows(run: Run) -> Run:
