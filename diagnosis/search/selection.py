@@ -11,6 +11,7 @@ passes its tests (`members`) with the others in place.
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from functools import cached_property
+from itertools import count
 
 import numpy as np
 
@@ -52,8 +53,10 @@ from matstd.twin.thermal import drives
 MIN_CORRELATION_ALIKE = 0.95
 """Correlation of two fitted signatures from which only one of the sets is carried on."""
 
-MAX_TRIED_SETS = 4
-"""Most sets of one member more that are tried."""
+MAX_CARRIED_SETS = 4
+"""Most sets that are carried from one size to the next. With the best one alone the search of a
+printer's frame stops at two effects in white noise, takes the memory of its noise for patterns and
+states uncertainties a third too small."""
 
 MAX_TURNS = 3
 """Most turns of growing a set and of refining it."""
@@ -243,12 +246,15 @@ class Search:
 
     def grown(self, best: EffectSubset) -> EffectSubset:
         """A set with one member more and more, as long as every member stands."""
-        while not self.budget.is_spent:
-            self.progress(min(len(best.members) / USUAL_SET_SIZE, 1.0), "sets of effects")
-            least = best.evidence + POLICY.log_evidence_gain
-            larger = [self.polished(s) for s in self.extensions(best, MAX_TRIED_SETS)]
-            larger = sorted((s for s in larger if s.evidence > least), key=lambda s: -s.evidence)
-            standing = next((s for s in larger if self.stands(s)), None)
+        carried = [best]
+        for size in count(len(best.members) + 1):
+            if self.budget.is_spent:
+                break
+            grown = [s for c in carried for s in self.extensions(c, MAX_CARRIED_SETS)]
+            carried = self.kept(self.polished(s) for s in grown)
+            self.progress(min(size / USUAL_SET_SIZE, 1.0), "sets of effects")
+            better = [c for c in carried if c.evidence > best.evidence + POLICY.log_evidence_gain]
+            standing = next((c for c in better if self.stands(c)), None)
             if standing is None:
                 break
             best = standing
@@ -268,6 +274,11 @@ class Search:
                 directions.append(direction)
                 out.append(self.evaluate((*chosen.members, member)))
         return out
+
+    def kept(self, sets: Iterable[EffectSubset]) -> list[EffectSubset]:
+        """The few best of some sets, each once."""
+        unique = {tuple(sorted(m.key[:-1] for m in s.members)): s for s in sets}
+        return sorted(unique.values(), key=lambda s: -s.evidence)[:MAX_CARRIED_SETS]
 
     def polished(self, chosen: EffectSubset) -> EffectSubset:
         """Exchange members for better ones, one at a time, until none is better."""
@@ -291,7 +302,10 @@ class Search:
         return better if better.evidence > chosen.evidence else chosen
 
     def needed(self, chosen: EffectSubset) -> EffectSubset:
-        """The set without a member that the others, refined without it, make superfluous."""
+        """The set without a member that the others, refined without it, make superfluous.
+
+        Without this move a printer's frame is predicted to 4.1 instead of 2.8 µm.
+        """
         for member in reversed(chosen.members):
             others = self.refined(self.evaluate(chosen.others(member)))
             whole = self.evaluate((*others.members, member))
