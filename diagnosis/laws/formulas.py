@@ -56,7 +56,6 @@ class Part(NamedTuple):
 class Grids:
     """Columns of all shapes of the variables of a run, made once."""
 
-    space: Space
     field: Field
 
     @cached_property
@@ -70,7 +69,7 @@ class Grids:
             out = []
             for shape in shapes_of(driver, x):
                 points = grid(shape, driver, x)
-                columns = [np.stack(shape.values(x, *p))[:, self.space.used] for p in points]
+                columns = [np.stack(shape.values(x, *p)) for p in points]
                 if columns:
                     out.append((shape, points, np.stack(columns, axis=2)))
             self._made[driver.name] = out
@@ -81,12 +80,12 @@ _FARTHEST = 1e100  # of a formula in a step of the search: the square of a large
 
 
 def columns_of(field: Field, space: Space, parts: Sequence[Part]) -> Array:
-    """Columns of a product of shapes at the rows used, (N, coefficients)."""
+    """Columns of a product of shapes at all touches, (N, coefficients)."""
     out = np.ones((space.count, 1))
     for part in parts:
         x = field.x[part.factor.driver.name]
         found = part.factor.shape.values(x, *part.places)
-        own = np.stack([np.broadcast_to(f, x.shape) for f in found], axis=1)[space.used]
+        own = np.stack([np.broadcast_to(f, x.shape) for f in found], axis=1)
         out = (out[:, :, None] * own[:, None, :]).reshape(len(out), -1)
     return out
 
@@ -96,17 +95,16 @@ def spread(C: Array, S: Array) -> Array:
     return np.asarray((C[:, :, None] * S[:, None, :]).reshape(len(C), -1))
 
 
-def scan(grids: Grids, C: Array, driver: Driver, each: int = 1) -> list[tuple[Part, float, int]]:
-    """The best points of every shape of a variable, for a carrier.
+def scan(space: Space, grids: Grids, C: Array, driver: Driver) -> list[tuple[Part, float, int]]:
+    """The best point of every shape of a variable, for a carrier.
 
     Args:
         C: Columns of the carrier, or of the carrier times a first factor, (N, k).
-        each: How many points of every shape.
 
     Returns:
         Shape and place, squared residual explained, number of its parameters.
     """
-    space, out = grids.space, []
+    out, C = [], C * space.used[:, None]
     bases = np.concatenate([space.basis * C[:, i : i + 1] for i in range(C.shape[1])], axis=1).T
     for shape, points, columns in grids.of(driver):
         explained = np.concatenate(
@@ -115,10 +113,10 @@ def scan(grids: Grids, C: Array, driver: Driver, each: int = 1) -> list[tuple[Pa
                 for at in range(0, columns.shape[2], COLUMNS_AT_A_TIME)
             ]
         )
-        for g in np.argsort(-explained)[:each]:
-            part = Part(Factor(shape, driver), tuple(float(v) for v in points[g]))
-            count = C.shape[1] * len(shape.coefficients) + len(shape.free)
-            out.append((part, float(explained[g]), count))
+        g = int(np.argmax(explained))
+        part = Part(Factor(shape, driver), tuple(float(v) for v in points[g]))
+        count = C.shape[1] * len(shape.coefficients) + len(shape.free)
+        out.append((part, float(explained[g]), count))
     return out
 
 
@@ -170,25 +168,25 @@ def candidate(
     return Candidate(bearer=bearer, law=law, explained=explained, parameters=count, score=score)
 
 
-def single_formulas(grids: Grids, bearer: Bearer, driver: Driver, most: int) -> list[Candidate]:
+def single_formulas(
+    space: Space, grids: Grids, bearer: Bearer, driver: Driver, most: int
+) -> list[Candidate]:
     """Formulas of one variable at one carrier, the best first."""
-    space = grids.space
     ranked = sorted(
-        scan(grids, bearer.C, driver),
+        scan(space, grids, bearer.C, driver),
         key=lambda one: space.charge(one[2]) - float(space.gained(np.array(one[1]))),
     )
     return [candidate(space, grids.field, bearer, [part]) for part, _, _ in ranked[:most]]
 
 
 def product_formulas(
-    grids: Grids, bearer: Bearer, drivers: Sequence[Driver], most: int
+    space: Space, grids: Grids, bearer: Bearer, drivers: Sequence[Driver], most: int
 ) -> list[Candidate]:
     """Products of two shapes at one carrier, the best first.
 
     Either variable begins with its simple shapes; from the best pairs on, each factor is scanned
     anew with the other in place.
     """
-    space = grids.space
     found: list[tuple[tuple[Part, ...], float, int]] = []
     orders = (
         [tuple(drivers)] if drivers[0] == drivers[1] else [tuple(drivers), tuple(drivers[::-1])]
@@ -197,7 +195,7 @@ def product_formulas(
         for part in _simple(grids, first):
             C = spread(bearer.C, columns_of(grids.field, space, [part]))
             free = len(part.factor.shape.free)
-            for other, explained, count in scan(grids, C, second):
+            for other, explained, count in scan(space, grids, C, second):
                 found.append(((part, other), explained, count + free))
 
     def value(one: tuple[tuple[Part, ...], float, int]) -> float:
@@ -208,7 +206,7 @@ def product_formulas(
     for parts, _, _ in found[:3]:
         C = spread(bearer.C, columns_of(grids.field, space, [parts[1]]))
         free = len(parts[1].factor.shape.free)
-        for other, explained, count in scan(grids, C, parts[0].factor.driver):
+        for other, explained, count in scan(space, grids, C, parts[0].factor.driver):
             again.append(((other, parts[1]), explained, count + free))
     ranked = sorted(found + again, key=value)
     out: list[Candidate] = []

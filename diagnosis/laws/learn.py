@@ -19,7 +19,7 @@ from matstd.diagnosis.laws.acceptance import (
 from matstd.diagnosis.laws.beginning import Beginning, log_odds
 from matstd.diagnosis.laws.library import LibraryEffect, nearest_of_library
 from matstd.diagnosis.laws.policy import POLICY, LawPolicy
-from matstd.diagnosis.laws.search import Searched, search_law
+from matstd.diagnosis.laws.search import Ground, Searched, search_law
 from matstd.diagnosis.laws.space import Space
 from matstd.twin.compute import one_blas_thread
 from matstd.twin.frames import Array
@@ -194,22 +194,27 @@ def learn_laws(run: Run, model: Model | None = None, policy: LawPolicy = POLICY)
 
 @one_blas_thread()
 def learn_beside(
-    start: Beginning, policy: LawPolicy = POLICY, is_searched: bool = False
+    start: Beginning,
+    policy: LawPolicy = POLICY,
+    is_searched: bool = False,
+    ground: Ground | None = None,
 ) -> Learning:
     """Laws that explain what a fitted model leaves.
 
     Args:
         is_searched: Whether effects of the library were looked for before: then one that comes near
             a law takes nothing from it.
+        ground: Of another search in the same run.
     """
     white = replace(start, memory=None)
+    ground = ground or Ground.of(start.run)
     current, refused = start.fit, None
     laws: list[LearntLaw] = []
     charges: list[float] = []
     is_enough = int(current.used.sum()) >= MIN_TOUCHES_OF_LAW
     refusal = None if is_enough else Refusal.FEW
     for _ in range(policy.most_laws if is_enough else 0):
-        searched = search_law(Space.of(current), policy)
+        searched = search_law(Space.of(current), ground, policy)
         best = _learnt(searched)
         if best is None:
             break
@@ -226,7 +231,7 @@ def learn_beside(
             break
         laws.append(best)
         charges.append(log_odds(fit, current, best.score))
-        current = _each_anew(white, laws, charges, fit, policy)
+        current = _each_anew(white, laws, charges, fit, policy, ground)
     learnt = [one.law for one in laws]
     if start.memory is not None and laws:
         start = replace(start, memory=memory_left(current, start.memory))
@@ -244,7 +249,12 @@ def learn_beside(
 
 
 def _each_anew(
-    white: Beginning, laws: list[LearntLaw], charges: list[float], fit: Fit, policy: LawPolicy
+    white: Beginning,
+    laws: list[LearntLaw],
+    charges: list[float],
+    fit: Fit,
+    policy: LawPolicy,
+    ground: Ground,
 ) -> Fit:
     """Every law searched anew with the others in place, until none of them changes.
 
@@ -264,7 +274,7 @@ def _each_anew(
         waiting.remove(i)
         others = set(range(len(laws))) - {i}
         base = white.fitted([laws[k].law for k in sorted(others)])
-        best = _learnt(search_law(Space.of(base), policy))
+        best = _learnt(search_law(Space.of(base), ground, policy))
         if best is None or best.score < policy.min_score:
             continue
         is_same = best.law.name == laws[i].law.name

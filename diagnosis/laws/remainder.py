@@ -11,6 +11,7 @@ from matstd.diagnosis.laws.beginning import Beginning, log_odds
 from matstd.diagnosis.laws.learn import Learning, learn_beside
 from matstd.diagnosis.laws.library import charge_of
 from matstd.diagnosis.laws.policy import POLICY, LawPolicy
+from matstd.diagnosis.laws.search import Ground
 from matstd.diagnosis.regression import GrossErrors
 from matstd.twin.compute import one_blas_thread
 from matstd.twin.model import Effect
@@ -46,9 +47,10 @@ def learn_remainder(
     if not is_left and not (found and all(e.kind in IMITATORS for e in found)):
         return None
     rest = policy if is_left else replace(policy, most_laws=0)
-    beside = learn_beside(Beginning.of_fit(end, base, known), rest, True)
+    ground = Ground.of(end.run)
+    beside = learn_beside(Beginning.of_fit(end, base, known), rest, True, ground)
     if found:
-        alone = learn_beside(Beginning.of_fit(start, base, known), policy, True)
+        alone = learn_beside(Beginning.of_fit(start, base, known), policy, True, ground)
         odds = _odds(alone, beside, found) if alone.laws else -np.inf
         if odds >= policy.shorter:
             return replace(alone, instead_of=found, instead_odds=odds)

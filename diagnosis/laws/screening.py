@@ -6,22 +6,21 @@ curve knows no formula, so that nothing about the law is assumed but that it is 
 corners; what is too quick for it is scanned as a sine.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
 
+from matstd.diagnosis.laws.curves import Curves, Group, Waves, curve_evidence
 from matstd.diagnosis.laws.space import MIN_OWN, Space
 from matstd.diagnosis.residual import Bearer, bearers
 from matstd.twin.frames import Array
 from matstd.twin.laws import ON_BALL, SHAPES, WORDS, Driver, curve_columns, drivers, grid
+from matstd.twin.record import Touches
 
 LENGTHS = (0.03, 0.1, 0.3)
 """Correlation lengths of curves, as shares of the range."""
-
-SIZES = np.geomspace(0.3, 300.0, 7)
-"""Sizes of curves, in units of the noise at a touch."""
 
 SURFACE_WAVES = 6
 """Waves of either variable of a surface, from none on."""
@@ -33,9 +32,6 @@ DOMAIN_MARGIN = 0.1
 
 FAST_WAVES = 1200
 """Frequencies up to which sines of a reading are scanned, per range and half."""
-
-CURVE_CHARGE = 4.0
-"""Log evidence that size and length of a curve cost."""
 
 
 class Found(NamedTuple):
@@ -60,10 +56,6 @@ class Field:
     drivers: tuple[Driver, ...]
     x: dict[str, Array]
 
-    def used(self, driver: Driver, space: Space) -> Array:
-        """Values of a variable at the rows used, (N,)."""
-        return self.x[driver.name][space.used]
-
     def domain(self, driver: Driver) -> tuple[float, float]:
         """Range of a variable with a margin."""
         x = self.x[driver.name]
@@ -71,51 +63,72 @@ class Field:
         return low - DOMAIN_MARGIN * (high - low), high + DOMAIN_MARGIN * (high - low)
 
 
-def field_of(space: Space) -> Field:
-    """Carriers and variables of the touches of a run."""
-    variables = tuple(drivers(space.touches))
-    standard = ("shift", "tilt", "growth") if space.touches.instrument.has_standard else ()
+def field_of(touches: Touches, u: Array) -> Field:
+    """Carriers and variables of the touches of a run.
+
+    Args:
+        u: Stated uncertainty of the touches, (N,), mm.
+    """
+    variables = tuple(drivers(touches))
+    standard = ("shift", "tilt", "growth") if touches.instrument.has_standard else ()
+
+    def white(columns: Array) -> Array:
+        return np.asarray(columns / u[:, None])
+
     return Field(
-        bearers=tuple(bearers(space.touches, space.white, (*standard, "bias"))),
+        bearers=tuple(bearers(touches, white, (*standard, "bias"))),
         drivers=variables,
-        x={d.name: d.values(space.touches) for d in variables},
+        x={d.name: d.values(touches) for d in variables},
     )
 
 
-def singles(space: Space, field: Field) -> list[Found]:
-    """Every carrier with every variable, by the evidence of a curve, the best first."""
+def curves_of(field: Field) -> Curves:
+    """Smooth curves over every variable, at every carrier."""
+    return Curves.of(field.bearers, [waves_of(field, d) for d in field.drivers])
+
+
+def surfaces_of(field: Field) -> Curves:
+    """Smooth surfaces over every two variables, at every carrier."""
+    bases = {d.name: _surface_waves(field, d) for d in field.drivers}
+    waves = []
+    for one, other in combinations(field.drivers, 2):
+        if _is_sensible(one, other):
+            (A, wa), (B, wb) = bases[one.name], bases[other.name]
+            W = (A[:, :, None] * B[:, None, :]).reshape(len(A), -1)[:, 1:]
+            w = (wa[:, None] * wb).reshape(1, -1)[:, 1:]
+            waves.append(Waves((one, other), W, w, (SURFACE_LENGTH,)))
+    return Curves.of(field.bearers, waves)
+
+
+def by_evidence(space: Space, curves: Curves) -> list[Found]:
+    """Every carrier with every variable or pair of them, the best first."""
     out = []
-    bases = {d.name: waves_of(space, field, d) for d in field.drivers}
-    for bearer in field.bearers:
-        for driver in field.drivers:
-            B, weights, lengths = bases[driver.name]
-            G, b, scale = normal_equations(space, bearer.C, B)
-            weights = np.tile(weights, (1, bearer.C.shape[1]))
-            value, which, size = curve_evidence(space, G, b, weights)
-            size = size / scale if scale > 0.0 else 0.0
+    for waves, group, found in curves.evidence(space):
+        for i, bearer in enumerate(group.bearers):
+            size = float(found.size[i] / group.scale[i]) if group.scale[i] > 0.0 else 0.0
             out.append(
                 Found(
                     bearer=bearer,
-                    drivers=(driver,),
-                    evidence=value,
-                    length=lengths[which],
+                    drivers=waves.drivers,
+                    evidence=float(found.value[i]),
+                    length=waves.lengths[int(found.which[i])],
                     size=size,
                 )
             )
     return sorted(out, key=lambda f: -f.evidence)
 
 
-def waves_of(space: Space, field: Field, driver: Driver) -> tuple[Array, Array, Sequence[float]]:
-    """Waves of a variable (N, K), the prior deviations of their amplitudes (L, K), the lengths."""
-    x = field.used(driver, space)
+def waves_of(field: Field, driver: Driver) -> Waves:
+    """Waves of a variable; of a direction or of two values the variable itself."""
+    x = field.x[driver.name]
     values = np.unique(x)
     if driver.nature == "sign" or len(values) <= 2:
-        return (x - driver.zero)[:, None] / _unit(x, driver), np.ones((1, 1)), (0.0,)
+        B = (x - driver.zero)[:, None] / _unit(x, driver)
+        return Waves((driver,), B, np.ones((1, 1)), (0.0,))
     low, high = field.domain(driver)
     plain = curve_columns(x, low, high, 0.0)
     weights = [curve_columns(np.array([low]), low, high, length)[0] for length in LENGTHS]
-    whole = np.sqrt(plain.shape[1])
-    return plain * whole, np.array(weights), LENGTHS
+    return Waves((driver,), plain * np.sqrt(plain.shape[1]), np.array(weights), LENGTHS)
 
 
 def _unit(x: Array, driver: Driver) -> float:
@@ -123,64 +136,15 @@ def _unit(x: Array, driver: Driver) -> float:
     return float(np.abs(x - driver.zero).max()) or 1.0
 
 
-def normal_equations(space: Space, C: Array, B: Array) -> tuple[Array, Array, float]:
-    """Gram matrix and right side of all products of carrier columns and waves, freed of the model.
-
-    Scaled so that a wave of amplitude one is one noise at a touch, on average; the factor comes
-    back.
-    """
-    n = len(C)
-    scale = float(np.sqrt((C**2).sum(axis=1).mean()))
-    P = (C[:, :, None] * B[:, None, :]).reshape(n, -1) / max(scale, 1e-300)
-    U = space.basis.T @ P
-    return P.T @ P - U.T @ U, P.T @ space.r, scale
-
-
-def curve_evidence(space: Space, G: Array, b: Array, weights: Array) -> tuple[float, int, float]:
-    """Best log evidence over lengths and sizes, with the number of the length and the size.
-
-    ``log p(y) = -1/2 log det(1 + s^2 G) - nu/2 log(y^T (1 + s^2 C C^T)^-1 y)``.
-    """
-    best, which, size = -np.inf, 0, 1.0
-    for i, w in enumerate(weights):
-        values, vectors = np.linalg.eigh(w[:, None] * G * w)
-        values = np.maximum(values, 0.0)
-        along = (vectors.T @ (w * b)) ** 2
-        # every size at once: sizes lie along the first axis
-        s2 = SIZES[:, None] ** 2
-        explained = (s2 * along / (1.0 + s2 * values)).sum(axis=1)
-        each = space.gained(explained) - 0.5 * np.log1p(s2 * values).sum(axis=1)
-        j = int(np.argmax(each))
-        if each[j] > best:
-            best, which, size = float(each[j]), i, float(SIZES[j])
-    return best - CURVE_CHARGE, which, size
-
-
-def pairs(space: Space, field: Field) -> list[Found]:
-    """Every carrier with every two variables, by the evidence of a surface, the best first."""
-    bases = {d.name: _surface_waves(space, field, d) for d in field.drivers}
-    out = []
-    for i, one in enumerate(field.drivers):
-        for other in field.drivers[i + 1 :]:
-            if not _is_sensible(one, other):
-                continue
-            (A, wa), (B, wb) = bases[one.name], bases[other.name]
-            W = (A[:, :, None] * B[:, None, :]).reshape(len(A), -1)[:, 1:]
-            w = (wa[:, None] * wb).reshape(-1)[1:]
-            for bearer in field.bearers:
-                G, b, scale = normal_equations(space, bearer.C, W)
-                weights = np.tile(w, bearer.C.shape[1])[None]
-                value, _, size = curve_evidence(space, G, b, weights)
-                size = size / max(scale, 1e-300)
-                found = Found(
-                    bearer=bearer,
-                    drivers=(one, other),
-                    evidence=value,
-                    length=SURFACE_LENGTH,
-                    size=size,
-                )
-                out.append(found)
-    return sorted(out, key=lambda f: -f.evidence)
+def evidence_of(space: Space, C: Array, waves: Waves) -> tuple[float, float, float]:
+    """Log evidence of a curve at columns of a carrier (N, k), with its length and its size."""
+    group = Group((C * space.used[:, None])[None])
+    U = space.basis.T @ (group.C[0][:, :, None] * waves.B[:, None, :]).reshape(len(C), -1)
+    weights = np.tile(waves.weights, (1, C.shape[1]))
+    G = group.gram(waves.B) - U.T @ U
+    found = curve_evidence(space, G, group.right_side(space.r, waves.B), weights)
+    size = float(found.size[0] / max(group.scale[0], 1e-300))
+    return float(found.value[0]), waves.lengths[int(found.which[0])], size
 
 
 def _is_sensible(one: Driver, other: Driver) -> bool:
@@ -192,9 +156,9 @@ def _is_sensible(one: Driver, other: Driver) -> bool:
     return not is_two_signs and (one.nature in moved or other.nature in moved)
 
 
-def _surface_waves(space: Space, field: Field, driver: Driver) -> tuple[Array, Array]:
+def _surface_waves(field: Field, driver: Driver) -> tuple[Array, Array]:
     """Waves of one variable of a surface, the constant first, and their prior deviations."""
-    x = field.used(driver, space)
+    x = field.x[driver.name]
     one = np.ones(len(x))
     if driver.nature == "sign" or len(np.unique(x)) <= 2:
         return np.stack([one, (x - driver.zero) / _unit(x, driver)], axis=1), np.ones(2)
@@ -224,12 +188,13 @@ def rough_shapes(space: Space, field: Field, each: int) -> list[Rough]:
     What they explain is approximate: the model imitates little of a quick wave or of a loop.
     """
     C = np.concatenate([b.C[:, i : i + 1] for b in field.bearers for i in range(b.C.shape[1])], 1)
+    C = C * space.used[:, None]
     owner = [b for b in field.bearers for _ in range(b.C.shape[1])]
     share = max(1.0 - space.basis.shape[1] / space.count, 0.1)
     R, S = C * space.r[:, None], C**2
     waves, loops = [], []
     for driver in field.drivers:
-        x = field.used(driver, space)
+        x = field.x[driver.name]
         if driver.nature == "linear" or driver.name == "time":
             f = _quick_frequencies(driver, x)
             angle = 2.0 * np.pi * x[:, None] * f
@@ -247,8 +212,7 @@ def rough_shapes(space: Space, field: Field, each: int) -> list[Rough]:
             ]
         if "hysteresis" in WORDS[driver.nature] and driver.name not in ON_BALL:
             points = grid(SHAPES["hysteresis"], driver, x)
-            whole = field.x[driver.name]
-            H = np.stack([SHAPES["hysteresis"].values(whole, *p)[0][space.used] for p in points], 1)
+            H = np.stack([SHAPES["hysteresis"].values(x, *p)[0] for p in points], 1)
             power = (R.T @ H) ** 2 / (share * (S.T @ H**2) + MIN_OWN)
             loops += [
                 Rough(
@@ -280,16 +244,13 @@ def modulations(space: Space, field: Field, C: Array) -> list[tuple[Driver, floa
     Args:
         C: Columns of a carrier times a shape, (N, k).
     """
-    constant = np.ones((len(C), 1))
-    G, b, _ = normal_equations(space, C, constant)
-    plain, _, _ = curve_evidence(space, G, b, np.ones((1, C.shape[1])))
+    constant = Waves((), np.ones((len(C), 1)), np.ones((1, 1)), (0.0,))
+    plain = evidence_of(space, C, constant)[0]
     out = []
     for driver in field.drivers:
-        B, weights, _ = waves_of(space, field, driver)
-        if driver.nature == "sign" or len(weights) == 1:
-            B = np.hstack([constant, B])
-            weights = np.ones((1, 2))
-        G, b, _ = normal_equations(space, C, B)
-        value, _, _ = curve_evidence(space, G, b, np.tile(weights, (1, C.shape[1])))
-        out.append((driver, value - plain))
+        waves = waves_of(field, driver)
+        if waves.lengths[0] == 0.0:
+            B = np.hstack([constant.B, waves.B])
+            waves = waves._replace(B=B, weights=np.ones((1, 2)))
+        out.append((driver, evidence_of(space, C, waves)[0] - plain))
     return sorted(out, key=lambda one: -one[1])

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from matstd.diagnosis.laws.curves import Curves
 from matstd.diagnosis.laws.formulas import (
     Candidate,
     Grids,
@@ -22,18 +23,19 @@ from matstd.diagnosis.laws.policy import LawPolicy
 from matstd.diagnosis.laws.screening import (
     Field,
     Found,
-    curve_evidence,
+    by_evidence,
+    curves_of,
+    evidence_of,
     field_of,
     modulations,
-    normal_equations,
-    pairs,
     rough_shapes,
-    singles,
+    surfaces_of,
     waves_of,
 )
 from matstd.diagnosis.laws.space import Space
 from matstd.diagnosis.residual import Bearer
 from matstd.twin.laws import SHAPES, Driver, Factor, Law
+from matstd.twin.record import Run
 
 TOP_SINGLES, TOP_PAIRS, TOP_SQUARES = 14, 6, 2
 """Carriers with one variable, with two, and with one twice, for which formulas are looked for."""
@@ -79,26 +81,48 @@ class Searched:
     """
 
     space: Space
-    field: Field
     candidates: tuple[Candidate, ...]
     curve: float
     drift: float
 
 
-def search_law(space: Space, policy: LawPolicy) -> Searched:
+@dataclass(frozen=True, eq=False)
+class Ground:
+    """What all searches in one run share, whatever the model is and the rows that it uses.
+
+    Attributes:
+        field: Carriers and variables.
+        grids: Columns of all shapes.
+        curves: Inner products of curves over every variable.
+        surfaces: Of surfaces over every two.
+    """
+
+    field: Field
+    grids: Grids
+    curves: Curves
+    surfaces: Curves
+
+    @classmethod
+    def of(cls, run: Run) -> "Ground":
+        """Of a run."""
+        field = field_of(run.touches, run.u)
+        return cls(field, Grids(field), curves_of(field), surfaces_of(field))
+
+
+def search_law(space: Space, ground: Ground, policy: LawPolicy) -> Searched:
     """The laws that explain most of what a model leaves, beside one another."""
-    field = field_of(space)
-    grids = Grids(space, field)
-    one, two = singles(space, field), pairs(space, field)
+    grids = ground.grids
+    field = grids.field
+    one, two = by_evidence(space, ground.curves), by_evidence(space, ground.surfaces)
     found: list[Candidate] = []
     for f in _worth(one, two, MIN_SHARE_SINGLE, TOP_SINGLES):
-        found += single_formulas(grids, f.bearer, f.drivers[0], 4)
-    found += _rough(grids)
+        found += single_formulas(space, grids, f.bearer, f.drivers[0], 4)
+    found += _rough(space, grids)
     if not found or max(c.score for c in found) < one[0].evidence + CLEAR:
         for f in _worth(one, two, MIN_SHARE_SINGLE, TOP_SQUARES):
-            found += product_formulas(grids, f.bearer, (f.drivers[0], f.drivers[0]), 2)
+            found += product_formulas(space, grids, f.bearer, (f.drivers[0], f.drivers[0]), 2)
     for f in _worth(_gaining(two, one), one, MIN_SHARE_PAIR, TOP_PAIRS):
-        found += product_formulas(grids, f.bearer, f.drivers, 4)
+        found += product_formulas(space, grids, f.bearer, f.drivers, 4)
     promising = sorted(_distinct(found), key=lambda c: -_charged(c, field, policy).score)[:REFINED]
     top = _charged(promising[0], field, policy).score if promising else 0.0
     near = [c for c in promising if _charged(c, field, policy).score > min(0.5 * top, top - FAR)]
@@ -113,7 +137,6 @@ def search_law(space: Space, policy: LawPolicy) -> Searched:
     ranked = _shorter_first(ranked, policy)
     return Searched(
         space=space,
-        field=field,
         candidates=tuple(ranked),
         curve=float(best_curve),
         drift=drifts[0].evidence - policy.tried_singles if drifts else -np.inf,
@@ -145,9 +168,9 @@ def _gaining(two: Sequence[Found], one: Sequence[Found]) -> list[Found]:
     ]
 
 
-def _rough(grids: Grids) -> list[Candidate]:
+def _rough(space: Space, grids: Grids) -> list[Candidate]:
     """Shapes that no curve shows, alone and with a size that depends on a second variable."""
-    space, field = grids.space, grids.field
+    field = grids.field
     out: list[Candidate] = []
     for r in rough_shapes(space, field, ROUGH):
         part = Part(Factor(SHAPES[r.word], r.driver), r.places)
@@ -158,7 +181,7 @@ def _rough(grids: Grids) -> list[Candidate]:
         driver, gain = modulations(space, field, C)[0]
         if gain > MIN_GAIN_PAIR:
             ranked = sorted(
-                scan(grids, C, driver),
+                scan(space, grids, C, driver),
                 key=lambda s: space.charge(s[2]) - float(space.gained(np.array(s[1]))),
             )
             out += [
@@ -239,16 +262,12 @@ def _curve_times(
     space: Space, field: Field, bearer: Bearer, first: Part, driver: Driver
 ) -> tuple[Law, float] | None:
     """A curve over a variable, times a factor that is in place; None over two values."""
-    B, weights, lengths = waves_of(space, field, driver)
-    if len(weights) == 1:
+    waves = waves_of(field, driver)
+    if waves.lengths[0] == 0.0:
         return None
     C = spread(bearer.C, columns_of(field, space, [first]))
-    G, b, scale = normal_equations(space, C, B)
-    evidence, which, size = curve_evidence(space, G, b, np.tile(weights, (1, C.shape[1])))
-    law = with_curve(
-        space, field, bearer, driver, lengths[which], size / max(scale, 1e-300), [first]
-    )
-    return law, evidence
+    evidence, length, size = evidence_of(space, C, waves)
+    return with_curve(space, field, bearer, driver, length, size, [first]), evidence
 
 
 def _curve_candidate(space: Space, bearer: Bearer, law: Law, score: float) -> Candidate:

@@ -7,7 +7,6 @@ matrices.
 """
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
@@ -19,6 +18,9 @@ from matstd.twin.record import Touches
 MIN_OWN = 1e-5
 """Least squared share of a column that the model cannot imitate: below it the rest is rounding."""
 
+SMALLEST_OWN = 1e-7
+"""Least square of a direction of columns of unit length that is no rounding."""
+
 SMALLEST_SHARE = 1e-9
 """Least share of a direction of the data that the model imitates at all."""
 
@@ -27,20 +29,25 @@ SMALLEST_SHARE = 1e-9
 class Space:
     """A fitted model, seen from its residual.
 
+    Rows are all touches of the run; those that the fit does not use are zero, so that fits that use
+    others share columns.
+
     Attributes:
         touches: All of the run.
-        used: Rows that the fit rests upon, N of them.
-        u: Their standard uncertainty as stated, (N,), mm.
-        Q: Basis of the model, (N + P, P): rows of the data, then of the prior.
-        residual: Residual over the stated uncertainty, (N + P,).
+        used: Rows that the fit rests upon, (N,).
+        u: Standard uncertainty of all as stated, (N,), mm.
+        basis: What the model can imitate of the data: A (N, K) with ``A A^T = Q Q^T``.
+        r: Residual over the stated uncertainty, (N,).
+        square: Squared residual, the prior's part and the stated noise included.
         dof: Degrees of freedom left.
     """
 
     touches: Touches
     used: BoolArray
     u: Array
-    Q: Array
-    residual: Array
+    basis: Array
+    r: Array
+    square: float
     dof: float
 
     @classmethod
@@ -52,13 +59,21 @@ class Space:
         """
         factor = fit.noise.factor
         solution = solve(fit.X[fit.used] * factor, fit.y[fit.used] * factor)
-        residual = np.concatenate([solution.residual, -solution.phi])
+        # parameters that the prior decides reach the data not at all: of 155 columns 95 are left
+        left, size, _ = np.linalg.svd(solution.Q, full_matrices=False)
+        kept = size**2 > SMALLEST_SHARE
+        basis = np.zeros((len(fit.used), int(kept.sum())))
+        basis[fit.used] = left[:, kept] * size[kept]
+        r = np.zeros(len(fit.used))
+        r[fit.used] = solution.residual
+        both = np.concatenate([solution.residual, solution.phi])
         return cls(
             touches=fit.run.touches,
             used=fit.used,
-            u=fit.run.u[fit.used],
-            Q=np.vstack([solution.Q, solution.root]),
-            residual=residual,
+            u=fit.run.u,
+            basis=basis,
+            r=r,
+            square=float(both @ both) + PRIOR_DOF,
             dof=max(solution.dof, 1.0),
         )
 
@@ -66,27 +81,6 @@ class Space:
     def count(self) -> int:
         """Number of rows."""
         return len(self.u)
-
-    @cached_property
-    def basis(self) -> Array:
-        """What the model can imitate of the data: A (N, K) with ``A A^T = Q_N Q_N^T``.
-
-        Parameters that the prior decides reach the data not at all: of 155 columns of Q_N, the
-        rows of the data in Q, 95 are left, exactly.
-        """
-        left, size, _ = np.linalg.svd(self.Q[: self.count], full_matrices=False)
-        kept = size**2 > SMALLEST_SHARE
-        return np.asarray(left[:, kept] * size[kept])
-
-    @property
-    def r(self) -> Array:
-        """Rows of the data in the residual, (N,)."""
-        return self.residual[: self.count]
-
-    @property
-    def square(self) -> float:
-        """Squared residual, the prior's part and the stated noise included."""
-        return float(self.residual @ self.residual) + PRIOR_DOF
 
     @property
     def freedom(self) -> float:
@@ -98,14 +92,8 @@ class Space:
         return self.dof + PRIOR_DOF
 
     def white(self, columns: Array) -> Array:
-        """Columns (all rows, K), mm, over the uncertainty of the rows used, (N, K)."""
-        return np.asarray(columns[self.used] / self.u[:, None])
-
-    def own(self, C: Array) -> Array:
-        """Columns (N, K) freed of what the model can imitate, (N + P, K)."""
-        out = self.Q @ -(self.Q[: self.count].T @ C)
-        out[: len(C)] += C
-        return out
+        """Columns (N, K), mm, over the uncertainty; zero where a row is not used."""
+        return np.asarray(columns * (self.used / self.u)[:, None])
 
     def gained(self, explained: Array) -> Array:
         """Log evidence of explaining so much of the square, parameters not charged."""
@@ -118,13 +106,15 @@ class Space:
 
     def explained(self, C: Array) -> float:
         """Squared residual that columns (N, K) explain together."""
-        own = self.own(C)
-        norm = np.linalg.norm(own, axis=0)
-        kept = norm > np.sqrt(MIN_OWN) * np.linalg.norm(C, axis=0)
-        if not kept.any():
-            return 0.0
-        W = own[:, kept] / norm[kept]
-        values, vectors = np.linalg.eigh(W.T @ W)
-        along = vectors.T @ (W.T @ self.residual)
-        is_own = values > 1e-7
-        return float((along[is_own] ** 2 / values[is_own]).sum())
+        C = C * self.used[:, None]
+        U = self.basis.T @ C
+        G, raw = C.T @ C, np.einsum("nk,nk->k", C, C)
+        G -= U.T @ U
+        kept = np.diagonal(G) > MIN_OWN * raw
+        size = np.sqrt(np.diagonal(G)[kept])
+        b = (self.r @ C)[kept] / size
+        if len(b) < 2:
+            return float(b @ b)
+        values, vectors = np.linalg.eigh(G[np.ix_(kept, kept)] / np.outer(size, size))
+        is_own = values > SMALLEST_OWN
+        return float(((vectors.T @ b)[is_own] ** 2 / values[is_own]).sum())
