@@ -5,12 +5,13 @@ matrices. A product of two shapes is found by turns: with one factor in place, t
 that factor is a carrier like any other.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from matstd.diagnosis.laws.screening import Field
 from matstd.diagnosis.laws.space import MIN_OWN, Space
@@ -18,8 +19,14 @@ from matstd.diagnosis.residual import Bearer
 from matstd.twin.frames import Array
 from matstd.twin.laws import SHAPES, Driver, Factor, Law, Shape, grid, shapes_of
 
+IntArray = NDArray[np.int64]
+
 COLUMNS_AT_A_TIME = 2000
 """Columns that are projected at a time."""
+
+COARSE, FULL = 80, 5
+"""Points of a grid that are tried beside every simple shape, and the best pairs whose second shape
+is then scanned in full: a third of the time of full scans, and the same laws."""
 
 MOST_STEPS = 400
 """Most evaluations of a refinement."""
@@ -81,13 +88,11 @@ _FARTHEST = 1e100  # of a formula in a step of the search: the square of a large
 
 def columns_of(field: Field, space: Space, parts: Sequence[Part]) -> Array:
     """Columns of a product of shapes at all touches, (N, coefficients)."""
-    out = np.ones((space.count, 1))
+    out = [np.ones(space.count)]
     for part in parts:
-        x = field.x[part.factor.driver.name]
-        found = part.factor.shape.values(x, *part.places)
-        own = np.stack([np.broadcast_to(f, x.shape) for f in found], axis=1)
-        out = (out[:, :, None] * own[:, None, :]).reshape(len(out), -1)
-    return out
+        found = part.factor.shape.values(field.x[part.factor.driver.name], *part.places)
+        out = [a * b for a in out for b in found]
+    return np.stack(out, axis=1)
 
 
 def spread(C: Array, S: Array) -> Array:
@@ -95,11 +100,14 @@ def spread(C: Array, S: Array) -> Array:
     return np.asarray((C[:, :, None] * S[:, None, :]).reshape(len(C), -1))
 
 
-def scan(space: Space, grids: Grids, C: Array, driver: Driver) -> list[tuple[Part, float, int]]:
+def scan(
+    space: Space, grids: Grids, C: Array, driver: Driver, most: int | None = None
+) -> list[tuple[Part, float, int]]:
     """The best point of every shape of a variable, for a carrier.
 
     Args:
         C: Columns of the carrier, or of the carrier times a first factor, (N, k).
+        most: Points of every shape that are tried; None for all.
 
     Returns:
         Shape and place, squared residual explained, number of its parameters.
@@ -107,6 +115,9 @@ def scan(space: Space, grids: Grids, C: Array, driver: Driver) -> list[tuple[Par
     out, C = [], C * space.used[:, None]
     bases = np.concatenate([space.basis * C[:, i : i + 1] for i in range(C.shape[1])], axis=1).T
     for shape, points, columns in grids.of(driver):
+        if most is not None and len(points) > most:
+            spread_out = _spread_out(len(points), most)
+            points, columns = points[spread_out], columns[:, :, spread_out]
         explained = np.concatenate(
             [
                 _explained(space, C, bases, columns[:, :, at : at + COLUMNS_AT_A_TIME])
@@ -120,6 +131,12 @@ def scan(space: Space, grids: Grids, C: Array, driver: Driver) -> list[tuple[Par
     return out
 
 
+def _spread_out(count: int, most: int) -> IntArray:
+    """Numbers of points of a grid, evenly in all its directions: by the golden section."""
+    places = np.arange(most) * (0.5 * (np.sqrt(5.0) - 1.0)) % 1.0
+    return np.unique((places * count).astype(int))
+
+
 def _explained(space: Space, C: Array, bases: Array, S: Array) -> Array:
     """Squared residual that the carrier times the shape explains at every point, (G,).
 
@@ -127,6 +144,12 @@ def _explained(space: Space, C: Array, bases: Array, S: Array) -> Array:
         bases: The basis of the model times every column of the carrier, (k P, N).
     """
     (m, _, points), k = S.shape, C.shape[1]
+    if k * m == 1:
+        raw, b = C[:, 0] ** 2 @ S[0] ** 2, (C[:, 0] * space.r) @ S[0]
+        U = bases @ S[0]
+        own = raw - np.einsum("pg,pg->g", U, U)
+        is_own = own > MIN_OWN * raw
+        return np.where(is_own, b**2 / np.where(is_own, own, 1.0), 0.0)
     # products of columns are made once for all pairs: half the time of a pair at a time
     squares = (C[:, :, None] * C[:, None, :]).reshape(len(C), -1).T  # (k k, N)
     U = np.stack([(bases @ s).reshape(k, -1, points) for s in S], axis=1)  # (k, m, P, G)
@@ -140,10 +163,6 @@ def _explained(space: Space, C: Array, bases: Array, S: Array) -> Array:
     raw = np.einsum("gaa->ga", G).copy()
     U = U.reshape(k * m, -1, points).transpose(2, 0, 1)
     G = G - U @ U.transpose(0, 2, 1)
-    if k * m == 1:
-        own = G[:, 0, 0]
-        is_own = own > MIN_OWN * raw[:, 0]
-        return np.where(is_own, b[:, 0] ** 2 / np.where(is_own, own, 1.0), 0.0)
     size = np.sqrt(np.maximum(raw, 1e-300))
     G = G / (size[:, :, None] * size[:, None, :])
     values, vectors = np.linalg.eigh(G)
@@ -184,34 +203,29 @@ def product_formulas(
 ) -> list[Candidate]:
     """Products of two shapes at one carrier, the best first.
 
-    Either variable begins with its simple shapes; from the best pairs on, each factor is scanned
-    anew with the other in place.
+    Either variable begins with its simple shapes, beside which a part of the grid of the other is
+    scanned; from the best pairs on, each factor is scanned anew in full with the other in place.
     """
-    found: list[tuple[tuple[Part, ...], float, int]] = []
-    orders = (
-        [tuple(drivers)] if drivers[0] == drivers[1] else [tuple(drivers), tuple(drivers[::-1])]
-    )
-    for first, second in orders:
-        for part in _simple(grids, first):
-            C = spread(bearer.C, columns_of(grids.field, space, [part]))
-            free = len(part.factor.shape.free)
-            for other, explained, count in scan(space, grids, C, second):
-                found.append(((part, other), explained, count + free))
-
-    def value(one: tuple[tuple[Part, ...], float, int]) -> float:
-        return space.charge(one[2]) - float(space.gained(np.array(one[1])))
-
-    found.sort(key=value)
-    again: list[tuple[tuple[Part, ...], float, int]] = []
-    for parts, _, _ in found[:3]:
-        C = spread(bearer.C, columns_of(grids.field, space, [parts[1]]))
-        free = len(parts[1].factor.shape.free)
-        for other, explained, count in scan(space, grids, C, parts[0].factor.driver):
-            again.append(((other, parts[1]), explained, count + free))
-    ranked = sorted(found + again, key=value)
+    orders = {tuple(drivers), tuple(drivers[::-1])}
+    found = [
+        product
+        for first, second in sorted(orders, key=lambda o: [d.name for d in o])
+        for part in _simple(grids, first)
+        for product in _products(space, grids, bearer, part, second, COARSE)
+    ]
+    for which, best in ((1, FULL), (0, FULL // 2)):  # the factor that is scanned in full
+        found.sort(key=lambda p: p.cost(space))
+        found += [
+            product if which == 1 else product.turned
+            for one in found[:best]
+            for product in _products(
+                space, grids, bearer, one.parts[1 - which], one.parts[which].factor.driver
+            )
+        ]
+    ranked = sorted(found, key=lambda p: p.cost(space))
     out: list[Candidate] = []
     names: set[str] = set()
-    for parts, _, _ in ranked:
+    for parts in (product.parts for product in ranked):
         ordered = parts if parts[0].factor.driver == drivers[0] else parts[::-1]
         one = candidate(space, grids.field, bearer, ordered)
         if one.law.name not in names:
@@ -220,6 +234,38 @@ def product_formulas(
         if len(out) == most:
             break
     return out
+
+
+class _Product(NamedTuple):
+    """Two factors with what they explain and their number of parameters."""
+
+    parts: tuple[Part, Part]
+    explained: float
+    count: int
+
+    @property
+    def turned(self) -> "_Product":
+        """With its factors in the other order."""
+        return self._replace(parts=self.parts[::-1])
+
+    def cost(self, space: Space) -> float:
+        """Log evidence that it lacks."""
+        return space.charge(self.count) - float(space.gained(np.array(self.explained)))
+
+
+def _products(
+    space: Space,
+    grids: Grids,
+    bearer: Bearer,
+    kept: Part,
+    driver: Driver,
+    most: int | None = None,
+) -> Iterator[_Product]:
+    """One factor in place, times every shape of a variable at its best point."""
+    C = spread(bearer.C, columns_of(grids.field, space, [kept]))
+    free = len(kept.factor.shape.free)
+    for other, explained, count in scan(space, grids, C, driver, most):
+        yield _Product((kept, other), explained, count + free)
 
 
 def _simple(grids: Grids, driver: Driver) -> list[Part]:
