@@ -53,6 +53,7 @@ def law_table(
             "touches": second.touches,
             "without_um": second.without / UM,
             "with_um": second.learnt / UM,
+            "with_kept_times_um": None if second.clocked is None else second.clocked / UM,
         }
     return table
 
@@ -93,6 +94,7 @@ def _law(learning: Learning, one: LearntLaw, effect: str) -> dict[str, Any]:
         "law": one.law.name,
         "effect": effect,
         "family": "*".join(f.shape.word for f in one.law.factors),
+        "belongs_to": "machine" if learning.travels(one.law) else "run",
         "carrier": one.law.carrier.name,
         "carriers_alike": [c.name for c in one.alike],
         "variables": [f.driver.name for f in one.law.factors],

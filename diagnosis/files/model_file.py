@@ -25,6 +25,7 @@ from matstd.twin.files import (
     read_text,
 )
 from matstd.twin.frames import Array
+from matstd.twin.laws import law_of
 from matstd.twin.library import owner_of, parse_effect
 from matstd.twin.machine import Chain
 from matstd.twin.model import Effect, Model, is_tunable
@@ -148,19 +149,32 @@ class SavedModel(Displayed):
     left_out: tuple[EffectOfOtherRun, ...] = ()
 
     def without(self, left_out: Sequence[EffectOfOtherRun]) -> "SavedModel":
-        """The model without some effects, as far as what is known of the others goes."""
+        """The model without some effects, as far as what is known of the others goes.
+
+        The driver of a law that belongs to another run may act in this one as much: in its place
+        stands zero with its size as uncertainty.
+        """
         names = {one.effect.name for one in left_out}
         if not names:
             return self
-        kept = [e.name not in names for e, _ in self.model.parameters]
+        kept = np.array([e.name not in names for e, _ in self.model.parameters])
         root = self.estimates.root[kept]
+        known = Prior.of_estimates(self.estimates.mean[kept], root @ root.T)
+        margins: dict[str, Effect] = {}
+        for one in left_out:
+            law = law_of(one.effect)
+            if law is not None:
+                theta = self.estimates.mean[[e is law for e, _ in self.model.parameters]]
+                margin = law.elsewhere(theta)
+                margins[margin.name] = margin
+        unknown = tuple(margins.values())
+        added = sum(len(e.parameters) for e in unknown)
+        effects = [e for e in self.model.effects if e.name not in names]
         return replace(
             self,
-            model=Model(
-                self.model.chain, tuple(e for e in self.model.effects if e.name not in names)
-            ),
-            estimates=Prior.of_estimates(self.estimates.mean[kept], root @ root.T),
-            from_inner=self.from_inner[kept],
+            model=Model(self.model.chain, (*effects, *unknown)),
+            estimates=known.joined(Prior.of_effects(unknown)),
+            from_inner=np.pad(self.from_inner[kept], ((0, added), (0, 0))),
             reported={
                 name: numbers for name, numbers in self.reported.items() if name not in names
             },
@@ -301,7 +315,8 @@ def _of_others(
     is_probe = bool(touched) and touched <= {(p[0], p[-1]) for p in source.probes}
     last = source.learnt_from[-1] if source.learnt_from else ""
     for entry, effect in zip(table.effect, effects, strict=True):
-        owner = owner_of(effect)
+        # a law of time that had not come to rest stands with its run, too
+        owner = owner_of(effect) if owner_of(effect) != "machine" or not entry.run else "run"
         is_here = prints == {entry.run or last} or (owner == "probe" and is_probe)
         if owner != "machine" and not is_here:
             yield EffectOfOtherRun(

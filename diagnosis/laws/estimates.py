@@ -137,29 +137,45 @@ class SecondRun:
 
     Attributes:
         without: Root mean square of what the model leaves, per degree of freedom, mm.
-        learnt: The same with the laws taken off as they were learnt.
+        learnt: The same with the laws that hold for every run taken off as they were learnt.
+        clocked: With those besides that belong to the first run, as if what drives them had kept
+            its times; None where there are none.
     """
 
     touches: int
     without: float
     learnt: float
+    clocked: float | None = None
 
     @property
     def is_better(self) -> bool:
         """Whether the laws predict it better than none."""
         return self.learnt < self.without
 
+    @property
+    def is_clock_kept(self) -> bool:
+        """Whether it repeats, at the same times, what seemed to belong to the first run alone."""
+        return self.clocked is not None and self.clocked < REPEATED * self.learnt
+
+
+REPEATED = 0.95
+"""Least fall of the error by which a second run repeats a law of the time: another phase makes the
+error larger, and none makes it a little smaller."""
+
 
 def second_run(learning: Learning, run: Run) -> SecondRun:
     """How well the laws predict another run; raises NotEnoughData."""
     run = with_commanded(without_copies(run))
     model: Model = learning.before.model
-    before = fit_run(run, model)
-    freed = replace(run, deviation=run.deviation - learning.predicted(run))
-    after = fit_run(freed, model)
-    u = float(np.median(run.u))
+
+    def left(known: Array | float) -> float:
+        fit = fit_run(replace(run, deviation=run.deviation - known), model)
+        return float(np.median(run.u)) * fit.noise.chi2_ratio**0.5
+
+    is_bound = not all(learning.travels(one.law) for one in learning.laws)
     return SecondRun(
         touches=len(run),
-        without=u * before.noise.chi2_ratio**0.5,
-        learnt=u * after.noise.chi2_ratio**0.5,
+        without=left(0.0),
+        learnt=left(learning.predicted(run)),
+        clocked=left(learning.predicted_by_clock(run)) if is_bound else None,
     )

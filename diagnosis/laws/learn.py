@@ -132,29 +132,42 @@ class Learning:
         return ["learnt-law" if count == 1 else f"learnt-law-{i}" for i in range(1, count + 1)]
 
     @cached_property
-    def members(self) -> tuple[tuple[Effect, Array, float], ...]:
-        """Laws over which predictions average, with their amplitudes and shares.
+    def members(self) -> dict[str, list[tuple[Effect, Array, float]]]:
+        """Laws over which predictions average, with amplitudes and shares, by the law chosen.
 
         Amplitudes of a member are those that it has in the place of the law that was chosen.
         """
-        out: list[tuple[Effect, Array, float]] = []
+        out: dict[str, list[tuple[Effect, Array, float]]] = {}
         chosen = [one.law for one in self.laws]
         for i, one in enumerate(self.laws):
+            own = out.setdefault(one.law.name, [])
             for law, share in one.members(self.policy):
                 effects = [*chosen[:i], law, *chosen[i + 1 :]]
                 fit = self.after if law is one.law else self.beginning.fitted(effects)
-                out.append((law, fit.theta[fit.of_effect(law.name)], share))
-        return tuple(out)
+                own.append((law, fit.theta[fit.of_effect(law.name)], share))
+        return out
 
     def predicted(self, run: Run) -> Array:
         """Deviation that the laws add at the touches of any run, (N,), mm.
 
         A law that belongs to the run that it was learnt from adds nothing elsewhere.
         """
-        out, is_own = np.zeros(len(run)), run.fingerprint == self.before.run.fingerprint
-        for law, theta, share in self.members:
-            if is_own or owner_of(law) == "machine":
-                out += share * (columns([law], run.touches) @ theta)
+        return self._added(run, run.fingerprint == self.before.run.fingerprint)
+
+    def predicted_by_clock(self, run: Run) -> Array:
+        """The same, if what drives laws of the time kept the times of its run in another."""
+        return self._added(run, True)
+
+    def travels(self, law: Effect) -> bool:
+        """Whether a law belongs to the machine and not to the run that it was learnt from."""
+        return owner_of(law, self.before.run.touches) == "machine"
+
+    def _added(self, run: Run, is_clock_kept: bool) -> Array:
+        out = np.zeros(len(run))
+        for one in self.laws:
+            for law, theta, share in self.members[one.law.name]:
+                if is_clock_kept or (self.travels(one.law) and self.travels(law)):
+                    out += share * (columns([law], run.touches) @ theta)
         return out
 
     @cached_property

@@ -131,7 +131,7 @@ def _key(learning: Learning, second: SecondRun | None) -> list[KeyFigure]:
     if first is not None:
         size = f"{digits(first.before / UM)} → {microns(first.after)}"
         out.append(KeyFigure(size, "poses left out, without and with the law", "good"))
-    if second is not None:
+    if second is not None and second.learnt != second.without:
         size = f"{digits(second.without / UM)} → {microns(second.learnt)}"
         out.append(KeyFigure(size, "second run", "good" if second.is_better else "bad"))
     chi2 = learning.before.noise.chi2_ratio, learning.after.noise.chi2_ratio
@@ -203,6 +203,9 @@ def _held_out(learning: Learning, second: SecondRun | None) -> Section:
     if second is not None:
         rows.append([f"second run, {second.touches} touches", microns(second.without),
                      microns(second.learnt)])  # fmt: skip
+        if second.clocked is not None:
+            rows.append(["the same, with all laws at the times of this run",
+                         microns(second.without), microns(second.clocked)])  # fmt: skip
         notes = [second_run_sentence(second)]
     caption = "Error of touches that were left out, root mean square"
     return Section(

@@ -16,7 +16,7 @@ from matstd.diagnosis.laws import (
     places,
 )
 from matstd.report.numbers import digits, microns, with_uncertainty
-from matstd.twin.laws import Carrier, Driver, Factor, Law, drivers
+from matstd.twin.laws import CLOCK, Carrier, Driver, Factor, Law, drivers
 from matstd.twin.units import DEG, HOUR, MINUTE, UM, URAD
 from matstd.twin.words import listed
 
@@ -68,12 +68,17 @@ _SHAPES = {
     "hysteresis": "a hysteresis loop",
     "play": "a play that follows",
     "beyond": "what is not known beyond the probed range",
+    "course": "what is not known of a driver that was not recorded",
     "curve": "a smooth curve without a formula",
 }
-_COURSE = (
-    "A curve over time is a driver that was not recorded: its course belongs to this run, and "
-    "other runs are predicted without it."
+_OF_ONE_RUN = (
+    "{what} belongs to this run. Other runs are predicted without it, and less surely by its size. "
+    "Record {record} as a column of the run, and learn again."
 )
+_SWITCHES = ("step", "window", "square", "saw", "sine", "pulse", "plateau", "ramp")
+"""Shapes over time of something that was switched or changed."""
+
+_LEVEL = "a temperature, a speed or a level that moves as it does"
 
 FEW_TOUCHES = 60
 """Below it a run leaves few degrees of freedom beside geometry and set-ups."""
@@ -292,8 +297,19 @@ def law_notes(learning: Learning) -> list[str]:
     out = []
     for one in learning.laws:
         out += [library_sentence(one), rivals_sentence(one), looks_like(one.law)]
-        out.append(_COURSE if one.law.belongs_to == "run" else "")
+        out.append("" if learning.travels(one.law) else _of_one_run(one.law))
     return [line for line in (*out, *limits_sentences(learning)) if line]
+
+
+def _of_one_run(law: Law) -> str:
+    """Why a law of the time is not expected in other runs, and what to record."""
+    if law.belongs_to == "machine":
+        what = "It had not come to rest when the run ended, so that it may be a drift, which"
+        return _OF_ONE_RUN.format(what=what, record=_LEVEL)
+    if any(f.driver.name == CLOCK and f.shape.word in _SWITCHES for f in law.factors):
+        record = "what switches or was changed (coolant, a pump, a cooler, a stylus, a clamp)"
+        return _OF_ONE_RUN.format(what="A driver that was not recorded and switches", record=record)
+    return _OF_ONE_RUN.format(what="A driver that was not recorded", record=_LEVEL)
 
 
 def limits_sentences(learning: Learning) -> list[str]:
@@ -374,8 +390,15 @@ def held_out_sentence(learning: Learning) -> str:
 
 def second_run_sentence(second: SecondRun) -> str:
     """What a second run says."""
-    words = f"A second run ({second.touches} touches): {microns(second.without)} without the law, "
-    words += f"{microns(second.learnt)} with it"
-    if second.is_better:
-        return f"{words}."
-    return f"{words}: the law does not hold there. Do not use it to predict."
+    words = f"A second run ({second.touches} touches): {microns(second.without)} without the law"
+    if second.clocked is None:
+        words += f", {microns(second.learnt)} with it"
+        if second.is_better:
+            return f"{words}."
+        return f"{words}: the law does not hold there. Do not use it to predict."
+    if second.learnt != second.without:
+        words += f", {microns(second.learnt)} with those that hold for every run"
+    words += f", {microns(second.clocked)} if what the run did not record kept its times"
+    if second.is_clock_kept:
+        return f"{words}: it did. What drives it begins with the run or its program."
+    return f"{words}: it did not."

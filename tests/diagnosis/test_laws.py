@@ -18,7 +18,13 @@ from matstd.api.diagnosing import compare, diagnose
 from matstd.cli import main
 from matstd.diagnosis import answer
 from matstd.diagnosis.answer import Verdict
-from matstd.diagnosis.files import diagnosis_table, model_of, model_text, read_model
+from matstd.diagnosis.files import (
+    diagnosis_table,
+    model_of,
+    model_text,
+    parsed_model,
+    read_model,
+)
 from matstd.diagnosis.fit import fit_run
 from matstd.diagnosis.laws import (
     POLICY,
@@ -35,10 +41,10 @@ from matstd.diagnosis.laws.beginning import Beginning
 from matstd.diagnosis.laws.learn import _by_rival as weighed
 from matstd.diagnosis.laws.library import LibraryEffect
 from matstd.diagnosis.laws.remainder import _determined
-from matstd.diagnosis.laws.screening import field_of, singles
-from matstd.diagnosis.laws.search import _curves
+from matstd.diagnosis.laws.screening import by_evidence
+from matstd.diagnosis.laws.search import Ground, _curves
 from matstd.diagnosis.laws.space import Space
-from matstd.report.laws import limits_sentences, no_law_sentence
+from matstd.report.laws import limits_sentences, no_law_sentence, second_run_sentence
 from matstd.report.run_view import diagnosis_step
 from matstd.report.verdict import part_lines
 from matstd.report.words import verdict_sentence
@@ -59,15 +65,58 @@ def test_a_law_is_found_with_its_carrier_variable_and_shape(stylus) -> None:
     assert all(h.after < h.before for h in found.held_out[:2])
 
 
-def test_a_second_run_is_predicted(stylus) -> None:
-    _, (_, second, free), found = stylus
-    said = second_run(found, second)
-    true = (
-        np.median(free.u)
-        * fit_run(free, ordinary_model(free.touches.chain)).noise.chi2_ratio ** 0.5
+def test_a_law_of_the_clock_of_one_run_is_not_expected_in_another(stylus) -> None:
+    """The stylus is changed in the second run, too, a quarter of an hour to an hour earlier."""
+    _, (run, second, free), found = stylus
+    assert not found.travels(found.laws[0].law)
+    assert np.any(found.predicted(run))
+    assert not np.any(found.predicted(second))
+    moved = second_run(found, second)
+    assert moved.learnt == moved.without
+    assert not moved.is_clock_kept
+    assert "kept its times: it did not." in second_run_sentence(moved)
+    model = ordinary_model(free.touches.chain)
+    true = np.median(free.u) * fit_run(free, model).noise.chi2_ratio ** 0.5
+    texts = law_case(
+        np.random.default_rng(5), "hmc1995", "stylus", (30.0, 31.0), 4, is_clock_kept=True
     )
+    kept = second_run(found, read_back(texts[1], MACHINES["hmc1995"]))
+    assert kept.clocked < 1.1 * true
+    assert kept.without > 1.3 * true
+    assert kept.is_clock_kept
+    assert "kept its times: it did. What drives it" in second_run_sentence(kept)
+
+
+def test_a_law_that_begins_with_the_set_up_predicts_a_second_run() -> None:
+    texts = law_case(np.random.default_rng(6), "hmc1995", "relaxing", (30.0, 31.0), poses=5)
+    run, second, free = (read_back(text, MACHINES["hmc1995"]) for text in texts[:3])
+    found = learn_laws(run)
+    assert [one.law.drivers[0].name for one in found.laws] == ["since-setup"]
+    said = second_run(found, second)
+    assert said.clocked is None
+    model = ordinary_model(free.touches.chain)
+    true = np.median(free.u) * fit_run(free, model).noise.chi2_ratio ** 0.5
     assert said.learnt < 1.1 * true
     assert said.without > 1.3 * true
+
+
+def test_another_run_is_predicted_less_surely_by_the_size_of_the_law(stylus) -> None:
+    _, (run, second, _), found = stylus
+    text = model_text(found.saved, "run")
+    own, other = (parsed_model(text, "model.toml", runs=[r]) for r in (run, second))
+    law = found.laws[0].law
+    (size,) = found.saved.theta[found.saved.of_effect(law.name)]
+    assert own.left_out == ()
+    assert [one.effect.name for one in other.left_out] == [law.name]
+    (margin,) = [e for e in other.model.effects if e.name == "law(bias,course time)"]
+    C = columns([margin], second.touches)
+    # by hand: the reading of the probe moves by the size of the step, either way, at any time
+    u2 = np.mean((C**2).sum(axis=1))
+    assert u2 == pytest.approx(size**2, rel=0.1)
+    theta, sd = other.estimates.mean[-C.shape[1] :], other.estimates.sd[-C.shape[1] :]
+    np.testing.assert_allclose(theta, 0.0)
+    np.testing.assert_allclose(sd, 1.0)
+    assert compare(second, other).u.mean() > 1.5 * compare(run, own).u.mean()
 
 
 def test_nothing_is_learnt_where_nothing_is_hidden() -> None:
@@ -120,7 +169,9 @@ def test_the_command_writes_an_effect_that_the_other_commands_take(
     assert "A second run" in said
     table = json.loads((out / "law.json").read_text(encoding="utf-8"))
     assert table["laws"][0]["family"] == "step"
-    assert table["second_run"]["with_um"] < table["second_run"]["without_um"]
+    assert table["laws"][0]["belongs_to"] == "run"
+    second = table["second_run"]
+    assert second["with_um"] == second["without_um"] < second["with_kept_times_um"]
     effect = out / "effect.py"
     assert len(effect.read_text(encoding="utf-8").splitlines()) < 45
     ruff = [sys.executable, "-m", "ruff", "check", "-q", "--select", "E9,F", str(effect)]
@@ -172,11 +223,11 @@ def test_a_diagnosis_learns_the_law_of_what_remains(stylus, tmp_path) -> None:
 
 def test_no_curve_is_offered_over_a_direction(stylus) -> None:
     """A temperature rises, falls or stays: three values, but no curve through them."""
-    space = Space.of(stylus[2].before)
-    field = field_of(space)
-    every = [f for f in singles(space, field) if f.drivers[0].nature == "sign"]
-    assert any(len(np.unique(field.used(f.drivers[0], space))) == 3 for f in every)
-    assert _curves(space, field, every, [], POLICY) == []
+    space, ground = Space.of(stylus[2].before), Ground.of(stylus[2].before.run)
+    every = by_evidence(space, ground.curves)
+    signs = [f for f in every if f.drivers[0].nature == "sign"]
+    assert any(len(np.unique(ground.field.x[f.drivers[0].name])) == 3 for f in signs)
+    assert _curves(space, ground.field, signs, [], POLICY) == []
 
 
 @pytest.fixture(scope="module")

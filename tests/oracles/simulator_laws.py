@@ -6,6 +6,7 @@ true law itself leaves.
 """
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -13,6 +14,12 @@ from simulator import probe, run_text
 from simulator_case import Ordinary, read_back, visible_size
 from simulator_effects import SMALL, Hidden, unit_of
 from simulator_experiment import MACHINES, STATED_NOISE, random_experiment
+
+CLOCKED = ("pump", "chiller", "ramp", "stylus", "room_cycle", "lubrication", "wander")
+"""Families that follow a clock which no column records: another run meets it at another time."""
+
+LATER = 900.0, 4000.0
+"""By how much, s."""
 
 MOST_DRAWS = 20
 """Places that are drawn for a law until an amplitude that machines have makes it visible."""
@@ -148,7 +155,7 @@ FAMILIES = (
 )  # fmt: skip
 
 
-def law_case(rng, label, family=None, signal_to_noise=(15.0, 60.0), poses=10):
+def law_case(rng, label, family=None, signal_to_noise=(15.0, 60.0), poses=10, is_clock_kept=False):
     """Texts of a run, of a second one, of the second one without the laws, and the truth.
 
     Args:
@@ -157,6 +164,7 @@ def law_case(rng, label, family=None, signal_to_noise=(15.0, 60.0), poses=10):
         family: Word of the law, of two at once with a plus between; None hides nothing.
         signal_to_noise: Range from which the visibility of each is drawn.
         poses: Table poses of every set-up.
+        is_clock_kept: Whether the second run meets every clock at the time of the first.
     """
     first, second = random_experiment(rng, label, poses), random_experiment(rng, label, poses)
     second.errors = first.errors
@@ -166,15 +174,30 @@ def law_case(rng, label, family=None, signal_to_noise=(15.0, 60.0), poses=10):
         ordinary = Ordinary(read_back(plain, MACHINES[label]).touches)
     for word in [] if family is None else family.split("+"):
         effect, about = drawn(rng, first, word, signal_to_noise, ordinary, label)
+        about["clocked"] = word in CLOCKED and not is_clock_kept
         hidden.append(effect)
         truth["hidden"].append(about)
     noise, other = (rng.normal(0.0, STATED_NOISE, len(e.time)) for e in (first, second))
+    again = [
+        at_another_time(effect, rng.uniform(*LATER)) if about["clocked"] else effect
+        for effect, about in zip(hidden, truth["hidden"], strict=True)
+    ]
     return (
         run_text(first, probe(first, hidden, noise), False),
-        run_text(second, probe(second, hidden, other), False),
+        run_text(second, probe(second, again, other), False),
         run_text(second, probe(second, [], other), False),
         truth,
     )
+
+
+def at_another_time(effect, later):
+    """The same law where its clock shows so many seconds more."""
+    act = effect.act
+
+    def acts(s, a):
+        return act(replace(s, time=s.time + later), a)
+
+    return replace(effect, act=acts)
 
 
 def law_of(rng, machine, family):

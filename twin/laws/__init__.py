@@ -7,10 +7,11 @@ where their parameters are scanned.
 
 from matstd.twin.laws.driver import ON_BALL, Driver, driver_of, drivers
 from matstd.twin.laws.grids import WORDS, grid, shapes_of
-from matstd.twin.laws.law import KIND, Carrier, Factor, Law, carrier_of, law_of
+from matstd.twin.laws.law import CLOCK, KIND, Carrier, Factor, Law, carrier_of, law_of
 from matstd.twin.laws.shape import SHAPES, Shape, curve_columns, play
 
 __all__ = [
+    "CLOCK",
     "KIND",
     "ON_BALL",
     "SHAPES",

@@ -8,6 +8,7 @@ amplitude times one or two shapes, each a function of one variable:
     law(shift,exp since-setup)      the standard moves by (a, b, c) exp(-t/tau)
     law(EBY,curve Y)           a smooth curve without a formula
     law(EZX,beyond Y)          what a law may do beyond the Y that were probed: zero ± its size
+    law(EZX,course time)       what a driver that was not recorded may do in another run: the same
 
 The library has effects with a cause; a law has none. It is learnt from what a model leaves, and
 predicts as any effect does.
@@ -24,7 +25,7 @@ from matstd.twin.fields import check_count, component_symbol, refusal
 from matstd.twin.frames import Array
 from matstd.twin.laws.driver import Driver, driver_of
 from matstd.twin.laws.grids import grid
-from matstd.twin.laws.shape import SHAPES, Shape
+from matstd.twin.laws.shape import SHAPES, Shape, curve_waves
 from matstd.twin.machine import Chain, Symbol
 from matstd.twin.model import Effect, Inner, Kind, Parameter, Term, Title, Where
 from matstd.twin.record import Touches
@@ -36,6 +37,19 @@ its own `size` is the prior."""
 
 BEYOND_LENGTH = 0.3
 """Share of its domain within which a law has lost its force beyond it."""
+
+CLOCK = "time"
+"""Variable of which another run has no record: its instants are those of one run."""
+
+AT_REST = 0.75
+"""Share of its motion that a law of time makes in the first half of a run if it comes to rest in
+it: an exponential whose time constant is below 0.46 of the run."""
+
+COURSE_TIME, COURSE_LENGTH = 3.0 * HOUR, 0.05
+"""Length of a run, and share of it within which a driver that was not recorded changes."""
+
+MARGINS = ("beyond", "course")
+"""Shapes of what is not known of a law: zero, with its size as uncertainty."""
 
 SHIFT, BIAS, GROWTH, TILT = "shift", "bias", "growth", "tilt"
 PARTS = {SHIFT: 3, BIAS: 1, GROWTH: 1, TILT: 3, "shift-x": 1, "shift-y": 1, "shift-z": 1}
@@ -187,18 +201,61 @@ class Law:
 
     @property
     def is_margin(self) -> bool:
-        """Whether it is what another law may do beyond its domain."""
-        return self.factors[0].shape.word == "beyond"
+        """Whether it is what another law may do beyond its domain, or in another run."""
+        return any(f.shape.word in MARGINS for f in self.factors)
 
     @property
     def belongs_to(self) -> str:
-        """Of what it is to be expected again: a curve over time is a driver that was not recorded.
+        """Of what it is to be expected again: "run" of a law whose clock is that of one run.
 
-        Its course is that of one run; where a law of time has a formula, what drives it is taken to
-        begin with the run.
+        Readings, temperatures, speeds, own columns, and times since a set-up, a pose or a change of
+        speed come back in other runs. The time of a run does where the start of the run is what
+        drives the law: where it relaxes from there. An instant, a phase or a course within the run
+        is that of a driver which was not recorded.
         """
-        is_course = any(f.shape.word == "curve" and f.driver.name == "time" for f in self.factors)
-        return "run" if is_course else "machine"
+        clocked = [f.shape for f in self.factors if f.driver.name == CLOCK]
+        is_own = clocked and not self.is_margin and not any(s.relaxes for s in clocked)
+        return "run" if is_own else "machine"
+
+    def owner(self, touches: Touches) -> str:
+        """The same, by the touches from which it was learnt.
+
+        What had not come to rest in them may be a drift as well, which belongs to its run.
+        """
+        if self.belongs_to == "run":
+            return "run"
+        end = float(np.ptp(touches.since_start))
+        times = np.linspace(0.0, end, 201)
+        for factor, own in self.parts:
+            if factor.driver.name == CLOCK and factor.shape.relaxes:
+                moved = np.abs(np.diff(factor.shape.values(times, *self.places[own]), axis=1))
+                if np.any(moved[:, :100].sum(axis=1) < AT_REST * moved.sum(axis=1)):
+                    return "run"
+        return "machine"
+
+    def elsewhere(self, theta: Array) -> "Law":
+        """What its driver may do in another run: zero, as unsure as it is large.
+
+        Args:
+            theta: Its amplitudes, base units.
+        """
+        times = np.linspace(0.0, COURSE_TIME, 401)
+        ways = theta.reshape(self.carrier.count, *(len(f.shape.coefficients) for f in self.factors))
+        moved = np.broadcast_to(ways[..., None], (*ways.shape, len(times)))
+        for i, (factor, own) in enumerate(self.parts, start=1):
+            if factor.driver.name == CLOCK:
+                S = np.stack(factor.shape.values(times, *self.places[own]))
+                around = [1] * ways.ndim
+                around[i] = len(S)
+                moved = (moved * S.reshape(*around, -1)).sum(axis=i, keepdims=True)
+        # waves of one size have this share of its square as variance, on average over the time
+        waves = 0.5 * (1.0 + curve_waves(COURSE_LENGTH)[0] ** 2)
+        size = float(np.abs(moved).max() / np.sqrt(waves))
+        clock = next(f.driver for f in self.factors if f.driver.name == CLOCK)
+        others = [(f, self.places[own]) for f, own in self.parts if f.driver.name != CLOCK]
+        factors = (*(f for f, _ in others), Factor(SHAPES["course"], clock))
+        course = (0.0, COURSE_TIME, COURSE_LENGTH, size)
+        return Law(self.carrier, factors, (*(v for _, own in others for v in own), *course))
 
     @property
     def is_tensor(self) -> bool:

@@ -34,6 +34,8 @@ class Shape:
     # whether the curve jumps at its places, so that only touches on either side fix them
     jumps: bool = False
     remembers: bool = False  # whether the order of touches matters
+    # whether it begins at the start of what its variable is counted from, and comes to rest
+    relaxes: bool = False
 
     @property
     def free(self) -> tuple[int, ...]:
@@ -133,6 +135,7 @@ def _shape(
     *places: str,
     jumps: bool = False,
     remembers: bool = False,
+    relaxes: bool = False,
 ) -> Shape:
     return Shape(
         word=word,
@@ -142,6 +145,7 @@ def _shape(
         places=places,
         jumps=jumps,
         remembers=remembers,
+        relaxes=relaxes,
     )
 
 
@@ -152,6 +156,7 @@ def _several(
     values: Values,
     places: tuple[str, ...],
     coefficients: tuple[str, ...],
+    relaxes: bool = False,
 ) -> Shape:
     """A shape of several coefficients."""
     return Shape(
@@ -161,6 +166,7 @@ def _several(
         values=values,
         places=places,
         coefficients=coefficients,
+        relaxes=relaxes,
     )
 
 
@@ -182,7 +188,7 @@ SHAPES: dict[str, Shape] = {
         _shape("power", "|u|^p, u = (x - zero)/unit",
                "np.maximum(np.abs(x - {zero}) / {unit}, 1e-9) ** {p}",
                lambda x, zero, unit, p: np.maximum(np.abs(x - zero) / unit, 1e-9) ** p,
-               "zero", "unit", "p"),
+               "zero", "unit", "p", relaxes=True),
         _shape("bump", "exp(-((x - x0)/w)^2)", "np.exp(-(((x - {x0}) / {w}) ** 2))",
                _gauss, "x0", "w"),
         _shape("bump-before", "exp(-((x - x0)/w)^2) for x < x0, else 0",
@@ -216,15 +222,18 @@ SHAPES: dict[str, Shape] = {
                lambda x, x0, w, unit: np.maximum(np.abs(x - x0) - w, 0.0) * np.sign(x - x0) / unit,
                "x0", "w", "unit"),
         _shape("exp", "exp(-(x - zero)/w)", "np.exp(-(x - {zero}) / {w})",
-               lambda x, zero, w: np.exp(np.clip(-(x - zero) / w, -60.0, 60.0)), "zero", "w"),
+               lambda x, zero, w: np.exp(np.clip(-(x - zero) / w, -60.0, 60.0)), "zero", "w",
+               relaxes=True),
         _shape("settling", "1 - exp(-(x - zero)/w)", "1.0 - np.exp(-(x - {zero}) / {w})",
-               lambda x, zero, w: -np.expm1(np.clip(-(x - zero) / w, -60.0, 60.0)), "zero", "w"),
+               lambda x, zero, w: -np.expm1(np.clip(-(x - zero) / w, -60.0, 60.0)), "zero", "w",
+               relaxes=True),
         _several("two-exp", "a exp(-(x - zero)/wa) + b exp(-(x - zero)/wb)",
               ("np.exp(-(x - {zero}) / {wa})", "np.exp(-(x - {zero}) / {wb})"),
               lambda x, zero, wa, wb: (np.exp(-(x - zero) / wa), np.exp(-(x - zero) / wb)),
-              ("zero", "wa", "wb"), ("fast", "slow")),
+              ("zero", "wa", "wb"), ("fast", "slow"), relaxes=True),
         _shape("log", "log(1 + (x - zero)/w)", "np.log1p(np.maximum(x - {zero}, 0.0) / {w})",
-               lambda x, zero, w: np.log1p(np.maximum(x - zero, 0.0) / w), "zero", "w"),
+               lambda x, zero, w: np.log1p(np.maximum(x - zero, 0.0) / w), "zero", "w",
+               relaxes=True),
         _several("sine", "a sin(2 pi x/period) + b cos(2 pi x/period)",
               ("np.sin(2 * np.pi * x / {period})", "np.cos(2 * np.pi * x / {period})"),
               _sine, ("period",), ("sin", "cos")),
@@ -248,6 +257,9 @@ SHAPES: dict[str, Shape] = {
                lambda x, zero, w, unit: (play(x, w) - zero) / unit, "zero", "w", "unit",
                remembers=True),
         _several("curve", "smooth curve without a formula, dying away beyond its domain", (),
+              _curve, ("low", "high", "length", "size"),
+              (*(f"c{k}" for k in range(WAVES)), "below", "above")),
+        _several("course", "what a driver that was not recorded does in another run", (),
               _curve, ("low", "high", "length", "size"),
               (*(f"c{k}" for k in range(WAVES)), "below", "above")),
         _several("beyond", "what is not known beyond the domain of a law", (), _beyond,
