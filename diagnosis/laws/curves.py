@@ -165,6 +165,7 @@ def _difference(before: Array | None, after: Array) -> tuple[Array, Array]:
     sign = np.r_[np.ones(after.shape[1]), -np.ones(before.shape[1])]
     more, vectors = np.linalg.eigh((R * sign) @ R.T)
     kept = np.abs(more) > SAME_IMITATION
+    kept[np.argmax(np.abs(more))] = True  # none would leave arrays without columns
     return Q @ vectors[:, kept], more[kept]
 
 
