@@ -94,7 +94,7 @@ def _law(learning: Learning, one: LearntLaw, effect: str) -> dict[str, Any]:
         "law": one.law.name,
         "effect": effect,
         "family": "*".join(f.shape.word for f in one.law.factors),
-        "belongs_to": "machine" if learning.travels(one.law) else "run",
+        "belongs_to": one.law.belongs_to,
         "carrier": one.law.carrier.name,
         "carriers_alike": [c.name for c in one.alike],
         "variables": [f.driver.name for f in one.law.factors],

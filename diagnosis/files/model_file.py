@@ -25,7 +25,7 @@ from matstd.twin.files import (
     read_text,
 )
 from matstd.twin.frames import Array
-from matstd.twin.laws import law_of
+from matstd.twin.laws import Law
 from matstd.twin.library import owner_of, parse_effect
 from matstd.twin.machine import Chain
 from matstd.twin.model import Effect, Model, is_tunable
@@ -162,8 +162,8 @@ class SavedModel(Displayed):
         known = Prior.of_estimates(self.estimates.mean[kept], root @ root.T)
         margins: dict[str, Effect] = {}
         for one in left_out:
-            law = law_of(one.effect)
-            if law is not None:
+            law = one.effect
+            if isinstance(law, Law):
                 theta = self.estimates.mean[[e is law for e, _ in self.model.parameters]]
                 margin = law.elsewhere(theta)
                 margins[margin.name] = margin
@@ -257,6 +257,8 @@ def parsed_model(
     effects, mean, factors = [], [], []
     for i, entry in enumerate(table.effect):
         effect = _effect(entry, chain, by_name, path, f"effect[{i}]")
+        if entry.run and isinstance(effect, Law):
+            effect = replace(effect, is_of_run=True)
         keys = parameter_keys(effect)
         expected = [key for key, _ in keys]
         # the covariance has no names, so the order of the estimates must be exact
@@ -315,8 +317,7 @@ def _of_others(
     is_probe = bool(touched) and touched <= {(p[0], p[-1]) for p in source.probes}
     last = source.learnt_from[-1] if source.learnt_from else ""
     for entry, effect in zip(table.effect, effects, strict=True):
-        # a law of time that had not come to rest stands with its run, too
-        owner = owner_of(effect) if owner_of(effect) != "machine" or not entry.run else "run"
+        owner = owner_of(effect)
         is_here = prints == {entry.run or last} or (owner == "probe" and is_probe)
         if owner != "machine" and not is_here:
             yield EffectOfOtherRun(

@@ -67,7 +67,7 @@ def model_text(
         numbers = (reported or {}).get(effect.name, ())
         if numbers:
             entry["told"] = [_reported_entry(r) for r in numbers]
-        if owner_of(effect, fit.run.touches) != "machine":
+        if owner_of(effect) != "machine":
             entry["run"] = fit.run.fingerprint
             entry["share_um"] = _share(fit, effect, values) / UM
         factors += [factor for _, factor in keys]

@@ -172,7 +172,7 @@ def second_run(learning: Learning, run: Run) -> SecondRun:
         fit = fit_run(replace(run, deviation=run.deviation - known), model)
         return float(np.median(run.u)) * fit.noise.chi2_ratio**0.5
 
-    is_bound = not all(learning.travels(one.law) for one in learning.laws)
+    is_bound = not all(one.travels for one in learning.laws)
     return SecondRun(
         touches=len(run),
         without=left(0.0),

@@ -26,10 +26,15 @@ from matstd.twin.frames import Array
 from matstd.twin.laws import Carrier, Law
 from matstd.twin.library import owner_of
 from matstd.twin.model import Effect, Model, columns
-from matstd.twin.record import Run
+from matstd.twin.record import Run, Touches
 
 MIN_TOUCHES_OF_LAW = 30
 """Fewer touches than this leave no law that could be distinguished from another."""
+
+
+STAND_IN = ("level", "time")
+"""Natures of variables that may stand for a driver that was not recorded: what was commanded, a
+reading or a direction, does not."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,6 +77,17 @@ class LearntLaw:
     def is_in_library(self) -> bool:
         """Whether an effect with a cause explains as much."""
         return self.library is not None and self.library.score > self.score
+
+    @property
+    def travels(self) -> bool:
+        """Whether it belongs to the machine and not to the run that it was learnt from."""
+        return self.law.belongs_to == "machine"
+
+    @property
+    def run_odds(self) -> float:
+        """Log odds against the nearest of all laws that belong to the run alone."""
+        near = (r.log_odds for r in self.rivals if r.law.belongs_to == "run")
+        return min(self.score - self.drift, *near, np.inf)
 
     @property
     def second_choice(self) -> Rival | None:
@@ -158,15 +174,11 @@ class Learning:
         """The same, if what drives laws of the time kept the times of its run in another."""
         return self._added(run, True)
 
-    def travels(self, law: Effect) -> bool:
-        """Whether a law belongs to the machine and not to the run that it was learnt from."""
-        return owner_of(law, self.before.run.touches) == "machine"
-
     def _added(self, run: Run, is_clock_kept: bool) -> Array:
         out = np.zeros(len(run))
         for one in self.laws:
             for law, theta, share in self.members[one.law.name]:
-                if is_clock_kept or (self.travels(one.law) and self.travels(law)):
+                if is_clock_kept or (one.travels and owner_of(law) == "machine"):
                     out += share * (columns([law], run.touches) @ theta)
         return out
 
@@ -245,6 +257,9 @@ def learn_beside(
         laws.append(best)
         charges.append(log_odds(fit, current, best.score))
         current = _each_anew(white, laws, charges, fit, policy, ground)
+    if laws:
+        laws = [_of_its_run(one, start.run.touches, policy) for one in laws]
+        current = white.fitted([one.law for one in laws], gross=current.gross)
     learnt = [one.law for one in laws]
     if start.memory is not None and laws:
         start = replace(start, memory=memory_left(current, start.memory))
@@ -259,6 +274,22 @@ def learn_beside(
         held_out=tuple(held_out(start.fit, current, learnt)),
         policy=policy,
     )
+
+
+def _of_its_run(one: LearntLaw, touches: Touches, policy: LawPolicy) -> LearntLaw:
+    """The law, with what belongs to its run marked among its rivals and itself.
+
+    A law over a temperature or a level may stand for a driver that was not recorded, which another
+    run meets at another temperature.
+    """
+    rivals = [
+        replace(r, law=replace(r.law, is_of_run=not r.law.rests(touches))) for r in one.rivals
+    ]
+    one = replace(one, rivals=tuple(rivals))
+    is_stand_in = any(d.nature in STAND_IN for d in one.law.drivers)
+    is_open = is_stand_in and one.run_odds < policy.open_driver
+    is_of_run = is_open or not one.law.rests(touches)
+    return replace(one, law=replace(one.law, is_of_run=is_of_run))
 
 
 def _each_anew(

@@ -19,6 +19,10 @@ class LawPolicy:
         min_score: Log evidence that a law must gain beyond all charges: odds of 150 : 1.
         shorter: Log evidence below which the shorter of two formulas is taken.
         class_odds: Log odds below which laws form a class; predictions average over its members.
+        open_driver: Log odds of a law over a temperature, a level or a time since an event against
+            every law that belongs to its run alone, below which it may stand for a driver that was
+            not recorded: odds of 150 : 1. Where the driver had been deleted they were 0.2, -0.6 and
+            3.5, of true laws of temperatures 19 and more.
         most_laws: Laws learnt one after the other.
         most_turns: How often each of several laws is searched anew with the others in place.
         most_members: Most laws over which a prediction averages.
@@ -33,6 +37,7 @@ class LawPolicy:
     min_score: float = 5.0
     shorter: float = 2.0
     class_odds: float = 4.0
+    open_driver: float = 5.0
     most_laws: int = 3
     most_turns: int = 2
     most_members: int = 6

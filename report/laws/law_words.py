@@ -297,19 +297,24 @@ def law_notes(learning: Learning) -> list[str]:
     out = []
     for one in learning.laws:
         out += [library_sentence(one), rivals_sentence(one), looks_like(one.law)]
-        out.append("" if learning.travels(one.law) else _of_one_run(one.law))
+        out.append("" if one.travels else _of_one_run(one))
     return [line for line in (*out, *limits_sentences(learning)) if line]
 
 
-def _of_one_run(law: Law) -> str:
-    """Why a law of the time is not expected in other runs, and what to record."""
-    if law.belongs_to == "machine":
-        what = "It had not come to rest when the run ended, so that it may be a drift, which"
-        return _OF_ONE_RUN.format(what=what, record=_LEVEL)
-    if any(f.driver.name == CLOCK and f.shape.word in _SWITCHES for f in law.factors):
+def _of_one_run(one: LearntLaw) -> str:
+    """Why a law is not expected in other runs, and what to record."""
+    clocked = [f.shape for f in one.law.factors if f.driver.name == CLOCK]
+    if not clocked:
+        odds = odds_words(one.run_odds)
+        what = f"A driver that was not recorded explains this run as well (odds {odds}); the law"
+    elif any(shape.relaxes for shape in clocked):
+        what = "It had not come to rest when the run ended, may be a drift, and"
+    elif any(shape.word in _SWITCHES for shape in clocked):
         record = "what switches or was changed (coolant, a pump, a cooler, a stylus, a clamp)"
         return _OF_ONE_RUN.format(what="A driver that was not recorded and switches", record=record)
-    return _OF_ONE_RUN.format(what="A driver that was not recorded", record=_LEVEL)
+    else:
+        what = "A driver that was not recorded"
+    return _OF_ONE_RUN.format(what=what, record=_LEVEL)
 
 
 def limits_sentences(learning: Learning) -> list[str]:

@@ -68,7 +68,7 @@ def test_a_law_is_found_with_its_carrier_variable_and_shape(stylus) -> None:
 def test_a_law_of_the_clock_of_one_run_is_not_expected_in_another(stylus) -> None:
     """The stylus is changed in the second run, too, a quarter of an hour to an hour earlier."""
     _, (run, second, free), found = stylus
-    assert not found.travels(found.laws[0].law)
+    assert not found.laws[0].travels
     assert np.any(found.predicted(run))
     assert not np.any(found.predicted(second))
     moved = second_run(found, second)

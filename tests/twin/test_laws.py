@@ -98,9 +98,36 @@ def test_names_that_mean_nothing_are_refused() -> None:
             parse_effect(text, chain)
 
 
-def test_a_curve_over_time_belongs_to_its_run_and_a_formula_to_the_machine(chain) -> None:
-    owners = [
-        owner_of(parse_effect(name, chain))
-        for name in ("law(EXX,curve time)", "law(EXX,log time)", "law(EXX,curve X)", "drift")
-    ]
-    assert owners == ["run", "machine", "machine", "run"]
+def test_what_only_the_clock_of_a_run_shows_belongs_to_that_run(chain) -> None:
+    texts = {
+        "machine": ("law(EXX,log time)", "law(EXX,exp time,sine time)", "law(EXX,curve X)",
+                    "law(shift,exp since-setup)", "law(EXX,square V-coolant)",
+                    "law(EXX,course time)"),
+        "run": ("law(EXX,curve time)", "law(EXX,lin X,step time)", "law(EXX,square time)", "drift"),
+    }  # fmt: skip
+    for owner, names in texts.items():
+        assert {name: owner_of(parse_effect(name, chain)) for name in names} == dict.fromkeys(
+            names, owner
+        )
+
+
+def test_a_relaxation_travels_if_the_run_saw_its_end() -> None:
+    """By hand: with x = T/(2 w), the first half makes 1/(1 + exp(-x)) of the motion."""
+    touches = made_up("hsm600u")
+    law = parse_effect("law(EXX,exp time)", touches.chain)
+    end = float(np.ptp(touches.since_start))
+    limit = end / (2.0 * np.log(3.0))  # three quarters
+    assert law.tuned(0.0, 0.98 * limit).rests(touches)
+    assert not law.tuned(0.0, 1.02 * limit).rests(touches)
+    assert parse_effect("law(EXX,exp X)", touches.chain).tuned(0.0, 1e6).rests(touches)
+
+
+def test_a_driver_of_one_run_is_as_large_as_uncertain_in_another() -> None:
+    """By hand: of 5 sin + 12 cos the size is 13, at every time of another run."""
+    touches = made_up("hsm600u")
+    law = parse_effect("law(EXX,sine time)", touches.chain).tuned(1000.0)
+    elsewhere = law.elsewhere(np.array([5.0e-3, 12.0e-3]))
+    moved = np.stack(elsewhere.amounts(touches), axis=1)
+    size = np.sqrt((moved**2).sum(axis=1).mean())
+    assert [p.sd for p in elsewhere.parameters] == [1.0] * moved.shape[1]
+    assert size == pytest.approx(13.0e-3, rel=0.1)

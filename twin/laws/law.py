@@ -155,6 +155,8 @@ class Law:
     places: tuple[float, ...]  # values of their parameters, one after the other, base units
     # whether they are still to be found: by a scan over all that makes sense
     is_sought: bool = False
+    # whether it belongs to its run for what else that run leaves open, whatever its variables
+    is_of_run: bool = False
 
     kind = "law"
 
@@ -213,25 +215,24 @@ class Law:
         drives the law: where it relaxes from there. An instant, a phase or a course within the run
         is that of a driver which was not recorded.
         """
+        if self.is_of_run:
+            return "run"
         clocked = [f.shape for f in self.factors if f.driver.name == CLOCK]
         is_own = clocked and not self.is_margin and not any(s.relaxes for s in clocked)
         return "run" if is_own else "machine"
 
-    def owner(self, touches: Touches) -> str:
-        """The same, by the touches from which it was learnt.
+    def rests(self, touches: Touches) -> bool:
+        """Whether a law that relaxes from the start of a run has come to rest at its end.
 
-        What had not come to rest in them may be a drift as well, which belongs to its run.
+        What has not may be a drift as well.
         """
-        if self.belongs_to == "run":
-            return "run"
-        end = float(np.ptp(touches.since_start))
-        times = np.linspace(0.0, end, 201)
+        times = np.linspace(0.0, float(np.ptp(touches.since_start)), 201)
         for factor, own in self.parts:
             if factor.driver.name == CLOCK and factor.shape.relaxes:
                 moved = np.abs(np.diff(factor.shape.values(times, *self.places[own]), axis=1))
                 if np.any(moved[:, :100].sum(axis=1) < AT_REST * moved.sum(axis=1)):
-                    return "run"
-        return "machine"
+                    return False
+        return True
 
     def elsewhere(self, theta: Array) -> "Law":
         """What its driver may do in another run: zero, as unsure as it is large.

@@ -35,7 +35,6 @@ from matstd.twin.effects import (
 from matstd.twin.elastic import body, load_play, stiffness, tool_point
 from matstd.twin.errors import BadFile, DesignError, UnknownEffect
 from matstd.twin.laws import KIND as LAW
-from matstd.twin.laws import law_of
 from matstd.twin.library.trial import users_fault
 from matstd.twin.machine import Chain
 from matstd.twin.model import Effect, Kind, Title, columns, is_tunable, own_title
@@ -113,15 +112,8 @@ def title_of(effect: Effect) -> Title:
     return Title(kind.title if kind is not None and kind.title else effect.name)
 
 
-def owner_of(effect: Effect, touches: Touches | None = None) -> str:
-    """What an effect belongs to, one of `Kind.OWNERS`, as its kind states, or the effect itself.
-
-    Args:
-        touches: From which it was learnt; a law may belong to their run for what it did in them.
-    """
-    law = law_of(effect)
-    if law is not None and touches is not None:
-        return law.owner(touches)
+def owner_of(effect: Effect) -> str:
+    """What an effect belongs to, one of `Kind.OWNERS`, as its kind states, or the effect itself."""
     kind = _REGISTER.get(effect.kind)
     usual = "machine" if kind is None else kind.belongs_to
     return str(getattr(effect, "belongs_to", usual))
