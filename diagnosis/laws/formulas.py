@@ -5,6 +5,7 @@ matrices. A product of two shapes is found by turns: with one factor in place, t
 that factor is a carrier like any other.
 """
 
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -27,6 +28,10 @@ COLUMNS_AT_A_TIME = 2000
 COARSE, FULL = 80, 5
 """Points of a grid that are tried beside every simple shape, and the best pairs whose second shape
 is then scanned in full: a third of the time of full scans, and the same laws."""
+
+ALIKE = 2
+"""Products of one variable's shape that are kept: what looks like a line over a temperature (a
+play, a kink, a settling over time) would crowd out other shapes of the other variable."""
 
 MOST_STEPS = 400
 """Most evaluations of a refinement."""
@@ -224,12 +229,15 @@ def product_formulas(
         ]
     ranked = sorted(found, key=lambda p: p.cost(space))
     out: list[Candidate] = []
-    names: set[str] = set()
+    met: Counter[tuple[int, str]] = Counter()
     for parts in (product.parts for product in ranked):
         ordered = parts if parts[0].factor.driver == drivers[0] else parts[::-1]
+        words = [(i, part.factor.shape.word) for i, part in enumerate(ordered)]
         one = candidate(space, grids.field, bearer, ordered)
-        if one.law.name not in names:
-            names.add(one.law.name)
+        if max(met[word] for word in words) < ALIKE and one.law.name not in (
+            c.law.name for c in out
+        ):
+            met.update(words)
             out.append(one)
         if len(out) == most:
             break

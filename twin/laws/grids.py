@@ -82,7 +82,7 @@ def grid(shape: Shape, driver: Driver, x: Array) -> Array:
         "lin": [(driver.zero, scale)],
         "lin-from": [(driver.zero, scale)],
         "quad": [(driver.zero, scale)],
-        "quad-about": [(p, scale) for p in np.linspace(low, high, 7)],
+        "quad-about": [(p, scale) for p in np.linspace(low, high, 16)],
         "cubic": [(driver.zero, scale)],
         "power": [
             (z, scale, p)
