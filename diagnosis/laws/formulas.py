@@ -29,7 +29,7 @@ COARSE, FULL = 80, 5
 """Points of a grid that are tried beside every simple shape, and the best pairs whose second shape
 is then scanned in full: a third of the time of full scans, and the same laws."""
 
-ALIKE = 2
+ALIKE = 3
 """Products of one variable's shape that are kept: what looks like a line over a temperature (a
 play, a kink, a settling over time) would crowd out other shapes of the other variable."""
 

@@ -126,7 +126,7 @@ def search_law(space: Space, ground: Ground, policy: LawPolicy) -> Searched:
         for f in _worth(one, two, MIN_SHARE_SINGLE, TOP_SQUARES):
             found += product_formulas(space, grids, f.bearer, (f.drivers[0], f.drivers[0]), 2)
     for f in _worth(_gaining(two, one), one, MIN_SHARE_PAIR, TOP_PAIRS):
-        found += product_formulas(space, grids, f.bearer, f.drivers, 4)
+        found += product_formulas(space, grids, f.bearer, f.drivers, 6)
     scored = [(_charged(c, field, policy).score, c) for c in _distinct(found)]
     promising = sorted(scored, key=lambda one: -one[0])[:REFINED]
     top = promising[0][0] if promising else 0.0
