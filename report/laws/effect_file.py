@@ -45,8 +45,10 @@ class {name}(Declared):
     units="{units}",
     typical="{typical}",
     source="learnt from {run}",
-)
+{owner})
 '''
+
+OF_ITS_RUN = '    belongs_to="run",  # its driver was not recorded: no other run repeats it\n'
 
 CURVE_KNOTS, CURVE_FLANKS = 41, 3.0
 """Knots of a table that stands for a curve without a formula, and correlation lengths by which it
@@ -97,6 +99,7 @@ def _class(learning: Learning, law: Law, kind: str, run: str) -> str:
         units="; ".join([f"a: {_UNITS.get(law.carrier.unit, law.carrier.unit)}", *_units(law)]),
         typical=typical,
         run=run,
+        owner="" if law.belongs_to == "machine" else OF_ITS_RUN,
     )
 
 
