@@ -19,6 +19,9 @@ from matstd.twin.laws import Driver
 SIZES = np.geomspace(0.3, 300.0, 7)
 """Sizes of curves, in units of the noise at a touch."""
 
+BETWEEN_SIZES = 5.0
+"""Most log evidence that a size between two of every second one adds; less than 2 was seen."""
+
 CURVE_CHARGE = 4.0
 """Log evidence that size and length of a curve cost."""
 
@@ -118,8 +121,8 @@ class Curves:
         groups = [Group(np.stack([b.C for b in alike]), alike) for alike in each]
         return cls(tuple(groups), tuple(waves))
 
-    def evidence(self, space: Space) -> list[tuple[Waves, Group, Evidence]]:
-        """Of all waves at all carriers."""
+    def evidence(self, space: Space, least: float = -np.inf) -> list[tuple[Waves, Group, Evidence]]:
+        """Of all waves at all carriers; exact above the least."""
         self._free_of(space)
         out = []
         for i, group in enumerate(self.groups):
@@ -127,7 +130,7 @@ class Curves:
             for j, waves in enumerate(self.waves):
                 b = group.right_side(space.r, waves.B)
                 weights = np.tile(waves.weights, (1, k))
-                found = curve_evidence(space, self._grams[i, j], b, weights)
+                found = curve_evidence(space, self._grams[i, j], b, weights, least)
                 out.append((waves, group, found))
         return out
 
@@ -169,34 +172,48 @@ def _difference(before: Array | None, after: Array) -> tuple[Array, Array]:
     return Q @ vectors[:, kept], more[kept]
 
 
-def curve_evidence(space: Space, G: Array, b: Array, weights: Array) -> Evidence:
+def curve_evidence(
+    space: Space, G: Array, b: Array, weights: Array, least: float = -np.inf
+) -> Evidence:
     """Best log evidence over lengths and sizes, with the number of the length and the size.
-
-    ``log p(y) = -1/2 log det(1 + s^2 G) - nu/2 log(y^T (1 + s^2 C C^T)^-1 y)``, both from one
-    Cholesky factor of ``1 + s^2 G`` bordered by ``s b``: its last pivot holds what is explained.
 
     Args:
         G: Inner products of the columns of every carrier, freed of the model, (M, K, K).
         b: Of the columns with the residual, (M, K).
         weights: Prior deviations for every length, (L, K).
+        least: Evidence below which it need not be exact: every second size is tried there.
+    """
+    each = np.full((len(b), len(weights), len(SIZES)), -np.inf)
+    each[:, :, ::2] = _by_size(space, G, b, weights, SIZES[::2])
+    near = each.max(axis=(1, 2)) > least - BETWEEN_SIZES
+    if near.any():
+        each[near, :, 1::2] = _by_size(space, G[near], b[near], weights, SIZES[1::2])
+    flat = each.reshape(len(b), -1)
+    best = np.argmax(flat, axis=1)
+    return Evidence(
+        value=flat[np.arange(len(b)), best] - CURVE_CHARGE,
+        which=best // len(SIZES),
+        size=SIZES[best % len(SIZES)],
+    )
+
+
+def _by_size(space: Space, G: Array, b: Array, weights: Array, sizes: Array) -> Array:
+    """Log evidence of curves for every length and size, nothing charged, (M, L, sizes).
+
+    ``log p(y) = -1/2 log det(1 + s^2 G) - nu/2 log(y^T (1 + s^2 C C^T)^-1 y)``, both from one
+    Cholesky factor of ``1 + s^2 G`` bordered by ``s b``: its last pivot holds what is explained.
     """
     M, K = b.shape
-    s2 = SIZES**2
-    each = np.empty((M, len(weights), len(SIZES)))
-    bordered = np.empty((M, len(SIZES), K + 1, K + 1))
+    s2 = sizes**2
+    out = np.empty((M, len(weights), len(sizes)))
+    bordered = np.empty((M, len(sizes), K + 1, K + 1))
     for i, w in enumerate(weights):
         wb = w * b
         corner = 1.0 + s2 * (wb**2).sum(axis=1)[:, None]
         bordered[..., :K, :K] = s2[:, None, None] * (w[:, None] * G * w)[:, None] + np.eye(K)
-        bordered[..., K, :K] = bordered[..., :K, K] = SIZES[:, None] * wb[:, None]
+        bordered[..., K, :K] = bordered[..., :K, K] = sizes[:, None] * wb[:, None]
         bordered[..., K, K] = corner
         pivots = np.diagonal(np.linalg.cholesky(bordered), axis1=2, axis2=3)
         explained = corner - pivots[..., K] ** 2
-        each[:, i] = space.gained(explained) - np.log(pivots[..., :K]).sum(axis=2)
-    flat = each.reshape(M, -1)
-    best = np.argmax(flat, axis=1)
-    return Evidence(
-        value=flat[np.arange(M), best] - CURVE_CHARGE,
-        which=best // len(SIZES),
-        size=SIZES[best % len(SIZES)],
-    )
+        out[:, i] = space.gained(explained) - np.log(pivots[..., :K]).sum(axis=2)
+    return out

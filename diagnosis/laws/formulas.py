@@ -25,7 +25,7 @@ IntArray = NDArray[np.int64]
 COLUMNS_AT_A_TIME = 2000
 """Columns that are projected at a time."""
 
-COARSE, FULL = 80, 5
+COARSE, FULL = 50, 5
 """Points of a grid that are tried beside every simple shape, and the best pairs whose second shape
 is then scanned in full: a third of the time of full scans, and the same laws."""
 
@@ -149,29 +149,26 @@ def _explained(space: Space, C: Array, bases: Array, S: Array) -> Array:
         bases: The basis of the model times every column of the carrier, (k P, N).
     """
     (m, _, points), k = S.shape, C.shape[1]
-    if k * m == 1:
-        raw, b = C[:, 0] ** 2 @ S[0] ** 2, (C[:, 0] * space.r) @ S[0]
-        U = bases @ S[0]
-        own = raw - np.einsum("pg,pg->g", U, U)
-        is_own = own > MIN_OWN * raw
-        return np.where(is_own, b**2 / np.where(is_own, own, 1.0), 0.0)
-    # products of columns are made once for all pairs: half the time of a pair at a time
-    squares = (C[:, :, None] * C[:, None, :]).reshape(len(C), -1).T  # (k k, N)
-    U = np.stack([(bases @ s).reshape(k, -1, points) for s in S], axis=1)  # (k, m, P, G)
-    b = np.stack([(C.T * space.r) @ s for s in S], axis=1).reshape(k * m, points).T
-    products = np.empty((points, k, m, k, m))
+    squares = np.stack([C[:, i] * C[:, g] for i in range(k) for g in range(k)])
+    U = [(bases @ s).reshape(k, -1, points) for s in S]
+    b = np.stack([(C.T * space.r) @ s for s in S], axis=1).reshape(k * m, points)
+    G = np.empty((k * m, k * m, points))
+    raw = np.empty((k * m, points))
     for j in range(m):
-        for g in range(j + 1):
-            cross = (squares @ (S[j] * S[g])).reshape(k, k, points).transpose(2, 0, 1)
-            products[:, :, j, :, g] = products[:, :, g, :, j] = cross
-    G = products.reshape(points, k * m, k * m)
-    raw = np.einsum("gaa->ga", G).copy()
-    U = U.reshape(k * m, -1, points).transpose(2, 0, 1)
-    G = G - U @ U.transpose(0, 2, 1)
+        for h in range(j + 1):
+            products = (squares @ (S[j] * S[h])).reshape(k, k, points)
+            for i in range(k):
+                for g in range(k):
+                    own = products[i, g] - np.einsum("pg,pg->g", U[j][i], U[h][g])
+                    G[i * m + j, g * m + h] = G[g * m + h, i * m + j] = own
+                raw[i * m + j] = products[i, i]
+    if k * m == 1:
+        is_own = G[0, 0] > MIN_OWN * raw[0]
+        return np.where(is_own, b[0] ** 2 / np.where(is_own, G[0, 0], 1.0), 0.0)
     size = np.sqrt(np.maximum(raw, 1e-300))
-    G = G / (size[:, :, None] * size[:, None, :])
-    values, vectors = np.linalg.eigh(G)
-    along = np.einsum("gab,ga->gb", vectors, b / size) ** 2
+    G, b = G / (size[:, None] * size), b / size
+    values, vectors = np.linalg.eigh(G.transpose(2, 0, 1))
+    along = np.einsum("gab,ag->gb", vectors, b) ** 2
     is_own = values > MIN_OWN
     return np.asarray(np.where(is_own, along / np.where(is_own, values, 1.0), 0.0).sum(axis=1))
 

@@ -100,10 +100,10 @@ def surfaces_of(field: Field) -> Curves:
     return Curves.of(field.bearers, waves)
 
 
-def by_evidence(space: Space, curves: Curves) -> list[Found]:
-    """Every carrier with every variable or pair of them, the best first."""
+def by_evidence(space: Space, curves: Curves, least: float = -np.inf) -> list[Found]:
+    """Every carrier with every variable or pair of them, the best first; exact above the least."""
     out = []
-    for waves, group, found in curves.evidence(space):
+    for waves, group, found in curves.evidence(space, least):
         for i, bearer in enumerate(group.bearers):
             size = float(found.size[i] / group.scale[i]) if group.scale[i] > 0.0 else 0.0
             out.append(

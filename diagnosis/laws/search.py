@@ -117,7 +117,8 @@ def search_law(space: Space, ground: Ground, policy: LawPolicy) -> Searched:
     """The laws that explain most of what a model leaves, beside one another."""
     grids = ground.grids
     field = grids.field
-    one, two = by_evidence(space, ground.curves), by_evidence(space, ground.surfaces)
+    one = by_evidence(space, ground.curves)
+    two = by_evidence(space, ground.surfaces, MIN_SHARE_SINGLE * one[0].evidence)
     found: list[Candidate] = []
     for f in _worth(one, two, MIN_SHARE_SINGLE, TOP_SINGLES):
         found += single_formulas(space, grids, f.bearer, f.drivers[0], 4)
