@@ -312,7 +312,11 @@ def refined(space: Space, field: Field, start: Candidate) -> Candidate:
     free = np.array(law.free)
     inner = law.inner(space.touches)
     steps = np.array([float(inner[i].grid[-1] - inner[i].grid[-2]) for i in free])
-    spans = [np.ptp(field.x[f.driver.name]) for f in law.factors for _ in f.shape.places]
+    ranges = [
+        (float(field.x[f.driver.name].min()), float(field.x[f.driver.name].max()))
+        for f in law.factors
+        for _ in f.shape.places
+    ]
 
     def parts_at(at: Array) -> list[Part]:
         moved = values.copy()
@@ -321,7 +325,7 @@ def refined(space: Space, field: Field, start: Candidate) -> Candidate:
 
     def left(at: Array) -> float:
         parts = parts_at(at)
-        if not _is_allowed(law, [v for p in parts for v in p.places], spans):
+        if not _is_allowed(law, [v for p in parts for v in p.places], ranges):
             return space.square
         S = columns_of(field, space, parts)
         if not np.all(np.abs(S) < _FARTHEST):  # nor NaN
@@ -343,12 +347,15 @@ def refined(space: Space, field: Field, start: Candidate) -> Candidate:
     return candidate(space, field, start.bearer, parts_at(best))
 
 
-def _is_allowed(law: Law, places: Sequence[float], spans: Sequence[float]) -> bool:
-    """Whether widths are widths, and edges in their order."""
+def _is_allowed(law: Law, places: Sequence[float], ranges: Sequence[tuple[float, float]]) -> bool:
+    """Whether places are near the touches, widths are widths, and edges in their order."""
     named = dict(zip(law.place_names, places, strict=True))
-    for (name, value), span in zip(named.items(), spans, strict=True):
+    spans = [high - low for low, high in ranges]
+    for (name, value), (low, high), span in zip(named.items(), ranges, spans, strict=True):
         base = name.split("-")[0]
-        if base in ("w", "wa", "wb", "period") and abs(value) < 2e-3 * span and base != "period":
+        if base in ("x0", "x1", "x2") and not low - span < value < high + span:
+            return False
+        if base in ("w", "wa", "wb") and abs(value) < 2e-3 * span:
             return False
         if base in ("w", "wa", "wb", "period") and abs(value) > 30.0 * span:
             return False

@@ -134,7 +134,7 @@ def search_law(space: Space, ground: Ground, policy: LawPolicy) -> Searched:
     near = [(score, c) for score, c in promising if score > min(0.5 * top, top - FAR)]
     hopeful = [c for score, c in near if score + REFINING * _gain(c, space) > policy.min_score]
     polished = [refined(space, field, c) for c in hopeful] or [c for _, c in near[:1]]
-    polished = [_charged(c, field, policy) for c in polished]
+    polished = [_charged(c, field, policy) for c in _at_best_places(space, field, polished)]
     drifts = [f for f in one if f.drivers[0].name == DRIFT][:1]
     beside = [f for f in drifts if all(f is not other for other in one[:3])]
     curves = _curves(space, field, [*one[:3], *beside], polished, policy)
@@ -149,6 +149,24 @@ def search_law(space: Space, ground: Ground, policy: LawPolicy) -> Searched:
         curve=float(best_curve),
         drift=drifts[0].evidence - policy.tried_singles if drifts else -np.inf,
     )
+
+
+def _at_best_places(space: Space, field: Field, found: Sequence[Candidate]) -> list[Candidate]:
+    """Laws of one shape at the places of the best of them, where they are better there.
+
+    The sum of squares of a saw-tooth or a window has many minima, and carriers are compared at the
+    same one.
+    """
+    best: dict[tuple[Factor, ...], Candidate] = {}
+    for one in sorted(found, key=lambda c: -c.score):
+        best.setdefault(one.law.factors, one)
+    out = []
+    for one in found:
+        places = best[one.law.factors].law.places
+        parts = [Part(f, places[own]) for f, own in one.law.parts]
+        there = candidate(space, field, one.bearer, parts)
+        out.append(one if one.score >= there.score else refined(space, field, there))
+    return out
 
 
 def _gain(one: Candidate, space: Space) -> float:

@@ -21,6 +21,9 @@ MIN_OWN = 1e-5
 SMALLEST_OWN = 1e-7
 """Least square of a direction of columns of unit length that is no rounding."""
 
+SMALLEST_COLUMN = 1e-100
+"""Columns without larger numbers are those of a shape far from every touch; squares underflow."""
+
 SMALLEST_SHARE = 1e-9
 """Least share of a direction of the data that the model imitates at all."""
 
@@ -107,6 +110,8 @@ class Space:
     def explained(self, C: Array) -> float:
         """Squared residual that columns (N, K) explain together."""
         C = C * self.used[:, None]
+        largest = np.abs(C).max(axis=0)
+        C = C[:, largest > SMALLEST_COLUMN] / largest[largest > SMALLEST_COLUMN]
         U = self.basis.T @ C
         G, raw = C.T @ C, np.einsum("nk,nk->k", C, C)
         G -= U.T @ U

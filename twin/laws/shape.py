@@ -110,6 +110,15 @@ def _gauss(x: Array, x0: float, width: float) -> Array:
     return np.asarray(np.exp(-(((x - x0) / width) ** 2)))
 
 
+def _after(x: Array, zero: float, w: float) -> Array:
+    """How many widths x is after zero, the edge of the values that were seen; 0 before it.
+
+    Beyond that edge an exponential would grow without a bound: another run that began 1 K colder
+    was predicted worse by 9 um.
+    """
+    return np.maximum((x - zero) / w, 0.0)
+
+
 def _turn(x: Array, period: float) -> Array:
     return np.asarray(2.0 * np.pi * x / period)
 
@@ -221,12 +230,11 @@ SHAPES: dict[str, Shape] = {
                "np.maximum(np.abs(x - {x0}) - {w}, 0.0) * np.sign(x - {x0}) / {unit}",
                lambda x, x0, w, unit: np.maximum(np.abs(x - x0) - w, 0.0) * np.sign(x - x0) / unit,
                "x0", "w", "unit"),
-        _shape("exp", "exp(-(x - zero)/w)", "np.exp(-(x - {zero}) / {w})",
-               lambda x, zero, w: np.exp(np.clip(-(x - zero) / w, -60.0, 60.0)), "zero", "w",
-               relaxes=True),
-        _shape("settling", "1 - exp(-(x - zero)/w)", "1.0 - np.exp(-(x - {zero}) / {w})",
-               lambda x, zero, w: -np.expm1(np.clip(-(x - zero) / w, -60.0, 60.0)), "zero", "w",
-               relaxes=True),
+        _shape("exp", "exp(-(x - zero)/w)", "np.exp(-np.maximum((x - {zero}) / {w}, 0.0))",
+               lambda x, zero, w: np.exp(-_after(x, zero, w)), "zero", "w", relaxes=True),
+        _shape("settling", "1 - exp(-(x - zero)/w)",
+               "1.0 - np.exp(-np.maximum((x - {zero}) / {w}, 0.0))",
+               lambda x, zero, w: -np.expm1(-_after(x, zero, w)), "zero", "w", relaxes=True),
         _several("two-exp", "a exp(-(x - zero)/wa) + b exp(-(x - zero)/wb)",
               ("np.exp(-(x - {zero}) / {wa})", "np.exp(-(x - {zero}) / {wb})"),
               lambda x, zero, wa, wb: (np.exp(-(x - zero) / wa), np.exp(-(x - zero) / wb)),
