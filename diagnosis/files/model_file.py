@@ -59,7 +59,8 @@ class EffectEntry(Table):
 
     `told` are its numbers as reported of the run, which rest on the touches alone where the
     estimates lean on what is usual. `run` and `share_um` stand at effects that are not the
-    machine's: the fingerprint of their run, and the rms that they made at its touches.
+    machine's: the fingerprint of their run, and the rms that they made at its touches. `limits` of
+    a law are the largest values of its columns that are used.
     """
 
     name: str
@@ -68,6 +69,7 @@ class EffectEntry(Table):
     told: list[ReportedEntry] = Field(default_factory=list)
     run: str = ""
     share_um: float = Field(default=0.0, ge=0.0)
+    limits: list[float] = Field(default_factory=list)
 
 
 class MemoryEntry(Table):
@@ -257,8 +259,9 @@ def parsed_model(
     effects, mean, factors = [], [], []
     for i, entry in enumerate(table.effect):
         effect = _effect(entry, chain, by_name, path, f"effect[{i}]")
-        if entry.run and isinstance(effect, Law):
-            effect = replace(effect, is_of_run=True)
+        if isinstance(effect, Law):
+            limits = entry.limits or effect.limits
+            effect = replace(effect, is_of_run=bool(entry.run), limits=tuple(limits))
         keys = parameter_keys(effect)
         expected = [key for key, _ in keys]
         # the covariance has no names, so the order of the estimates must be exact

@@ -19,6 +19,9 @@ IntArray = NDArray[np.int64]
 TIME_BLOCKS, PLACE_BLOCKS = 10, 5
 """Blocks of time, and of the range of a variable, that are left out one after the other."""
 
+CELLS = 2, 4
+"""Parts of the range of either variable of a law of two: touches of a cell of both are left out."""
+
 MEMORY_PARAMETERS = 2
 """Of noise that remembers: its correlation, and its kind."""
 
@@ -93,6 +96,33 @@ def predicts_better(before: Fit, after: Fit) -> bool:
         if now > was:
             return False
     return True
+
+
+def holds_between(before: Fit, after: Fit, law: Law) -> bool:
+    """Whether a law of two variables predicts where both have values that were left out together.
+
+    In plain errors, which a formula that grows towards an unseen corner raises at coarse and at
+    fine cells alike (3.01 -> 3.07 um, 1.25 -> 1.36); of true laws it lowered them by a quarter at
+    least. A law of one variable may act in one block alone, which says nothing of it.
+    """
+    if len(law.drivers) < 2:
+        return True
+    for parts in CELLS:
+        groups = _cells(before, law, parts)
+        if _error(after, _same(groups, after)) <= _error(before, groups):
+            return True
+    return False
+
+
+def _cells(fit: Fit, law: Law, parts: int) -> list[IntArray]:
+    """Rows of the run by parts of the range of every variable of a law, each as many touches."""
+    rows = np.flatnonzero(fit.used)
+    label = np.zeros(len(rows), dtype=int)
+    for driver in law.drivers:
+        x = driver.values(fit.run.touches)[rows]
+        edges = np.quantile(x, np.arange(1, parts) / parts)
+        label = label * parts + np.searchsorted(edges, x)
+    return [rows[label == k] for k in np.unique(label)]
 
 
 def pose_groups(fit: Fit) -> list[IntArray]:

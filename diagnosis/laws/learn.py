@@ -11,6 +11,7 @@ from matstd.diagnosis.laws.acceptance import (
     HeldOut,
     Refusal,
     held_out,
+    holds_between,
     memory_left,
     memory_score,
     predicts_better,
@@ -258,7 +259,8 @@ def learn_beside(
         charges.append(log_odds(fit, current, best.score))
         current = _each_anew(white, laws, charges, fit, policy, ground)
     if laws:
-        laws = [_of_its_run(one, start.run.touches, policy) for one in laws]
+        seen = start.run.touches[current.used]
+        laws = [_elsewhere(one, seen, policy) for one in laws]
         current = white.fitted([one.law for one in laws], gross=current.gross)
     learnt = [one.law for one in laws]
     if start.memory is not None and laws:
@@ -276,20 +278,24 @@ def learn_beside(
     )
 
 
-def _of_its_run(one: LearntLaw, touches: Touches, policy: LawPolicy) -> LearntLaw:
-    """The law, with what belongs to its run marked among its rivals and itself.
+def _elsewhere(one: LearntLaw, seen: Touches, policy: LawPolicy) -> LearntLaw:
+    """The law with what it may do elsewhere: how much, and whether in another run at all.
 
     A law over a temperature or a level may stand for a driver that was not recorded, which another
     run meets at another temperature.
+
+    Args:
+        seen: Touches from which it was learnt.
     """
     rivals = [
-        replace(r, law=replace(r.law, is_of_run=not r.law.rests(touches))) for r in one.rivals
+        replace(r, law=replace(r.law.as_seen(seen), is_of_run=not r.law.rests(seen)))
+        for r in one.rivals
     ]
     one = replace(one, rivals=tuple(rivals))
     is_stand_in = any(d.nature in STAND_IN for d in one.law.drivers)
     is_open = is_stand_in and one.run_odds < policy.open_driver
-    is_of_run = is_open or not one.law.rests(touches)
-    return replace(one, law=replace(one.law, is_of_run=is_of_run))
+    is_of_run = is_open or not one.law.rests(seen)
+    return replace(one, law=replace(one.law.as_seen(seen), is_of_run=is_of_run))
 
 
 def _each_anew(
@@ -346,7 +352,7 @@ def _refusal(
     """
     if best.score < policy.min_score:
         return Refusal.CHANCE
-    if not predicts_better(*white):
+    if not predicts_better(*white) or not holds_between(*white, best.law):
         return Refusal.PREDICTION
     if not stands_beside_memory(start, laws, best.law, best.score, white, policy):
         return Refusal.MEMORY
