@@ -25,7 +25,7 @@ from matstd.twin.files import (
     read_text,
 )
 from matstd.twin.frames import Array
-from matstd.twin.laws import Law
+from matstd.twin.laws import law_of
 from matstd.twin.library import owner_of, parse_effect
 from matstd.twin.machine import Chain
 from matstd.twin.model import Effect, Model, is_tunable
@@ -164,8 +164,8 @@ class SavedModel(Displayed):
         known = Prior.of_estimates(self.estimates.mean[kept], root @ root.T)
         margins: dict[str, Effect] = {}
         for one in left_out:
-            law = one.effect
-            if isinstance(law, Law):
+            law = law_of(one.effect)
+            if law is not None:
                 theta = self.estimates.mean[[e is law for e, _ in self.model.parameters]]
                 margin = law.elsewhere(theta)
                 margins[margin.name] = margin
@@ -259,9 +259,10 @@ def parsed_model(
     effects, mean, factors = [], [], []
     for i, entry in enumerate(table.effect):
         effect = _effect(entry, chain, by_name, path, f"effect[{i}]")
-        if isinstance(effect, Law):
-            limits = entry.limits or effect.limits
-            effect = replace(effect, is_of_run=bool(entry.run), limits=tuple(limits))
+        law = law_of(effect)
+        if law is not None:
+            limits = tuple(entry.limits) or law.limits
+            effect = replace(law, is_of_run=bool(entry.run), limits=limits)
         keys = parameter_keys(effect)
         expected = [key for key, _ in keys]
         # the covariance has no names, so the order of the estimates must be exact

@@ -43,7 +43,7 @@ CLOCK = "time"
 
 GROWTH_BEYOND = 1.1
 """Most that a formula may be anywhere, over its largest value at the touches from which it was
-learnt: the tenth leaves room for the displacements by which the uncertainty of its places is found."""
+learnt: the tenth leaves room for the displacements that give the uncertainty of its places."""
 
 AT_REST = 0.75
 """Share of its motion that a law of time makes in the first half of a run if it comes to rest in
