@@ -59,8 +59,7 @@ class EffectEntry(Table):
 
     `told` are its numbers as reported of the run, which rest on the touches alone where the
     estimates lean on what is usual. `run` and `share_um` stand at effects that are not the
-    machine's: the fingerprint of their run, and the rms that they made at its touches. `limits` of
-    a law are the largest values of its columns that are used.
+    machine's: the fingerprint of their run, and the rms that they made at its touches.
     """
 
     name: str
@@ -69,7 +68,6 @@ class EffectEntry(Table):
     told: list[ReportedEntry] = Field(default_factory=list)
     run: str = ""
     share_um: float = Field(default=0.0, ge=0.0)
-    limits: list[float] = Field(default_factory=list)
 
 
 class MemoryEntry(Table):
@@ -261,8 +259,7 @@ def parsed_model(
         effect = _effect(entry, chain, by_name, path, f"effect[{i}]")
         law = law_of(effect)
         if law is not None:
-            limits = tuple(entry.limits) or law.limits
-            effect = replace(law, is_of_run=bool(entry.run), limits=limits)
+            effect = replace(law, is_of_run=bool(entry.run))
         keys = parameter_keys(effect)
         expected = [key for key, _ in keys]
         # the covariance has no names, so the order of the estimates must be exact

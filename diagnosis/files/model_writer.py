@@ -19,7 +19,6 @@ from matstd.diagnosis.fit import Fit, Learnt, Reported, inner_unit
 from matstd.diagnosis.geometry import GeometryRow, standing, state_of_standing
 from matstd.diagnosis.regression import Memory
 from matstd.twin.frames import Array
-from matstd.twin.laws import law_of
 from matstd.twin.library import owner_of
 from matstd.twin.machine import Chain
 from matstd.twin.model import Effect, columns, inner_values
@@ -64,9 +63,6 @@ def model_text(
         if inner:
             entry["inner"] = inner
         values = theta[start : start + len(keys)]
-        law = law_of(effect)
-        if law is not None and law.limits:
-            entry["limits"] = list(law.limits)
         entry["estimate"] = {key: float(v) / f for (key, f), v in zip(keys, values, strict=True)}
         numbers = (reported or {}).get(effect.name, ())
         if numbers:

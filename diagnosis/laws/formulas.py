@@ -36,6 +36,10 @@ play, a kink, a settling over time) would crowd out other shapes of the other va
 MOST_STEPS = 400
 """Most evaluations of a refinement."""
 
+OUTSIDE = 0.25
+"""Share of the range of a variable by which a place may lie outside it: the flank of a bump whose
+top is farther away says little of that top."""
+
 SIMPLE_HARMONICS = (1, 2, 3, 4)
 
 
@@ -353,7 +357,8 @@ def _is_allowed(law: Law, places: Sequence[float], ranges: Sequence[tuple[float,
     spans = [high - low for low, high in ranges]
     for (name, value), (low, high), span in zip(named.items(), ranges, spans, strict=True):
         base = name.split("-")[0]
-        if base in ("x0", "x1", "x2") and not low - span < value < high + span:
+        outside = OUTSIDE * span
+        if base in ("x0", "x1", "x2") and not low - outside < value < high + outside:
             return False
         if base in ("w", "wa", "wb") and abs(value) < 2e-3 * span:
             return False

@@ -260,7 +260,7 @@ def learn_beside(
         current = _each_anew(white, laws, charges, fit, policy, ground)
     if laws:
         seen = start.run.touches[current.used]
-        laws = [_elsewhere(one, seen, policy) for one in laws]
+        laws = [_of_its_run(one, seen, policy) for one in laws]
         current = white.fitted([one.law for one in laws], gross=current.gross)
     learnt = [one.law for one in laws]
     if start.memory is not None and laws:
@@ -278,8 +278,8 @@ def learn_beside(
     )
 
 
-def _elsewhere(one: LearntLaw, seen: Touches, policy: LawPolicy) -> LearntLaw:
-    """The law with what it may do elsewhere: how much, and whether in another run at all.
+def _of_its_run(one: LearntLaw, seen: Touches, policy: LawPolicy) -> LearntLaw:
+    """The law, with what belongs to its run marked among its rivals and itself.
 
     A law over a temperature or a level may stand for a driver that was not recorded, which another
     run meets at another temperature.
@@ -287,15 +287,12 @@ def _elsewhere(one: LearntLaw, seen: Touches, policy: LawPolicy) -> LearntLaw:
     Args:
         seen: Touches from which it was learnt.
     """
-    rivals = [
-        replace(r, law=replace(r.law.as_seen(seen), is_of_run=not r.law.rests(seen)))
-        for r in one.rivals
-    ]
+    rivals = [replace(r, law=replace(r.law, is_of_run=not r.law.rests(seen))) for r in one.rivals]
     one = replace(one, rivals=tuple(rivals))
     is_stand_in = any(d.nature in STAND_IN for d in one.law.drivers)
     is_open = is_stand_in and one.run_odds < policy.open_driver
     is_of_run = is_open or not one.law.rests(seen)
-    return replace(one, law=replace(one.law.as_seen(seen), is_of_run=is_of_run))
+    return replace(one, law=replace(one.law, is_of_run=is_of_run))
 
 
 def _each_anew(

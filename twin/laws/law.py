@@ -41,10 +41,6 @@ BEYOND_LENGTH = 0.3
 CLOCK = "time"
 """Variable of which another run has no record: its instants are those of one run."""
 
-GROWTH_BEYOND = 1.1
-"""Most that a formula may be anywhere, over its largest value at the touches from which it was
-learnt: the tenth leaves room for the displacements that give the uncertainty of its places."""
-
 AT_REST = 0.75
 """Share of its motion that a law of time makes in the first half of a run if it comes to rest in
 it: an exponential whose time constant is below 0.46 of the run."""
@@ -161,8 +157,6 @@ class Law:
     is_sought: bool = False
     # whether it belongs to its run for what else that run leaves open, whatever its variables
     is_of_run: bool = False
-    # largest value of every column of its shapes that is used, either way; none without a limit
-    limits: tuple[float, ...] = ()
 
     kind = "law"
 
@@ -319,20 +313,7 @@ class Law:
         for factor, own in self.parts:
             found = factor.shape.values(factor.driver.values(touches), *self.places[own])
             out = [a * b for a in out for b in found]
-        if self.limits:
-            out = [np.clip(a, -most, most) for a, most in zip(out, self.limits, strict=True)]
         return out
-
-    def as_seen(self, touches: Touches) -> "Law":
-        """The same law, nowhere much larger than at the touches that it was learnt from.
-
-        A formula may grow without a bound where no touch has been: a bump whose top lies outside, a
-        product in a corner of two variables.
-        """
-        if self.is_curve_alone or self.is_margin:
-            return self  # a curve dies away
-        seen = replace(self, limits=()).amounts(touches)
-        return replace(self, limits=tuple(GROWTH_BEYOND * float(np.abs(a).max()) for a in seen))
 
     def terms(self, touches: Touches) -> Sequence[Term]:
         """Amounts at the entries of the carrier."""
