@@ -37,6 +37,9 @@ STAND_IN = ("level", "time")
 """Natures of variables that may stand for a driver that was not recorded: what was commanded, a
 reading or a direction, does not."""
 
+PROPORTIONAL = ("lin", "lin-from")
+"""Shapes that are taken for what they say, since bodies expand in proportion to a temperature."""
+
 
 @dataclass(frozen=True, eq=False)
 class Rival:
@@ -289,7 +292,9 @@ def _of_its_run(one: LearntLaw, seen: Touches, policy: LawPolicy) -> LearntLaw:
     """
     rivals = [replace(r, law=replace(r.law, is_of_run=not r.law.rests(seen))) for r in one.rivals]
     one = replace(one, rivals=tuple(rivals))
-    is_stand_in = any(d.nature in STAND_IN for d in one.law.drivers)
+    is_stand_in = any(
+        f.driver.nature in STAND_IN and f.shape.word not in PROPORTIONAL for f in one.law.factors
+    )
     is_open = is_stand_in and one.run_odds < policy.open_driver
     is_of_run = is_open or not one.law.rests(seen)
     return replace(one, law=replace(one.law, is_of_run=is_of_run))
