@@ -250,7 +250,7 @@ class _Product(NamedTuple):
 
     parts: tuple[Part, Part]
     explained: float
-    count: int
+    parameters: int
 
     @property
     def turned(self) -> "_Product":
@@ -259,7 +259,7 @@ class _Product(NamedTuple):
 
     def cost(self, space: Space) -> float:
         """Log evidence that it lacks."""
-        return space.charge(self.count) - float(space.gained(np.array(self.explained)))
+        return space.charge(self.parameters) - float(space.gained(np.array(self.explained)))
 
 
 def _products(
