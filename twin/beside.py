@@ -146,14 +146,19 @@ def serve() -> None:
     source = os.fdopen(os.dup(sys.stdin.fileno()), "rb")
     threading.Thread(target=_receive, args=(source, calls), daemon=True).start()
     while True:
-        function, args, kwargs = pickle.loads(calls.get())  # from our own process
-        outcome: tuple[Any, Exception | None]
-        try:
-            with one_blas_thread():
-                outcome = function(*args, **kwargs), None
-        except Exception as error:
-            outcome = None, error
-        _write(answers, pickle.dumps(outcome))
+        _write(answers, _outcome(calls.get()))
+
+
+def _outcome(call: bytes) -> bytes:
+    """What a call returns or raises; nothing of it stays in memory."""
+    function, args, kwargs = pickle.loads(call)  # from our own process
+    outcome: tuple[Any, Exception | None]
+    try:
+        with one_blas_thread():
+            outcome = function(*args, **kwargs), None
+    except Exception as error:
+        outcome = None, error
+    return pickle.dumps(outcome)
 
 
 def _receive(source: IO[bytes], calls: "queue.Queue[bytes]") -> None:
