@@ -112,7 +112,7 @@ def test_a_mirror_is_no_rotation(standard, tmp_path):
 
 
 def test_missing_and_cut_off_files(standard, tmp_path):
-    with pytest.raises(BadFile, match=r"none\.toml: file: found No such file"):
+    with pytest.raises(BadFile, match=r"none\.toml: file: found no such file"):
         read_standard(tmp_path / "none.toml")
     cut = tmp_path / "cut.toml"
     cut.write_text(text_of(standard, tmp_path)[:5000])

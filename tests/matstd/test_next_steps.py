@@ -144,3 +144,13 @@ def test_the_line_stands_at_the_end(tmp_path, capsys) -> None:
     beside = tmp_path / "project.toml"
     why = "after its numbers are those of your machine"
     assert last == f"next: matstd new project --machine '{path}' -o {beside}   ({why})"
+
+
+def test_a_diagnosis_that_is_repeated_keeps_its_options() -> None:
+    from matstd.commands.measured.diagnose import _again
+
+    args = parsed(["diagnose", "run.csv", "--standard", "s.toml", "--auto", "-o", "OUT"])
+    line = _again(args, "--add", "drift", runs=("new.csv",))
+    again = parsed(shlex.split(line.removeprefix("matstd ")))
+    assert (again.run_files, again.standard, again.auto) == (["run.csv", "new.csv"], "s.toml", True)
+    assert (again.add, again.output) == (["drift"], "OUT-2")

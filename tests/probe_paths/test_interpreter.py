@@ -398,7 +398,7 @@ def test_golden_files_are_read_from_disk(golden_folder, chain, read):
     for program in read:
         again = read_program(golden_folder / f"{program.name}.H", chain)
         assert len(again.steps) == len(program.steps)
-    with pytest.raises(BadFile, match="No such file"):
+    with pytest.raises(BadFile, match="no such file"):
         read_program(golden_folder / "NONE.H", chain)
 
 

@@ -178,7 +178,7 @@ def test_the_clock_passes_midnight(runs, chain):
 
 
 def test_a_file_that_is_not_there_gets_one_line(chain, tmp_path):
-    with pytest.raises(BadFile, match="No such file"):
+    with pytest.raises(BadFile, match="no such file"):
         read_log(tmp_path / "NONE.TXT", chain.rotary_axes)
 
 

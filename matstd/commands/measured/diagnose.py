@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -99,31 +100,38 @@ def _next(args: argparse.Namespace, found: Diagnosis) -> tuple[str, str]:
 
     from matstd.diagnosis.answer import Verdict
 
-    model, again = Path(args.output) / "model.toml", f"{args.output}-2"
+    model = Path(args.output) / "model.toml"
     if any(row.is_far for row in found.parts.geometry.beyond):
         why = "after the machine file or the run is mended: no table corrects a wrong description"
-        return called("diagnose", *args.run_files, "-o", again), why
+        return _again(args), why
     if found.withdrawn:
         return _unexplained(args, found)
     if found.verdict is Verdict.MISSING and not args.auto:
         named = [step.effect.name for step in found.steps if step.effect is not None]
         more = [word for name in named for word in ("--add", name)]
         why = "with the effect in model.toml; then matstd compensate"
-        return called("diagnose", *args.run_files, *more, "-o", again), why
+        return _again(args, *more), why
     if found.verdict is Verdict.UNEXPLAINED:
         return _unexplained(args, found)
     if found.verdict is Verdict.UNDECIDED and found.plans:
         plan = Path(args.output) / "next_measurement_1.csv"
-        words = called("diagnose", *args.run_files, "new.csv", "-o", again)
+        words = _again(args, runs=("new.csv",))
         return words, f"after measuring {plan} into new.csv"
     if found.verdict is Verdict.UNDECIDED:
-        words = called("diagnose", *args.run_files, "again.csv", "-o", again)
+        words = _again(args, runs=("again.csv",))
         return words, "after the same programs have run again: repeated touches show the noise"
     tool = np.median(found.run.touches.length)
     tables = Path(args.output).parent / "tables"
     words = called("compensate", model, "--tool-length", f"{tool:g}", "--tables", tables)
     words = " ".join([words, *_last_state(found), "--within", *_probed(found)])
     return words, "judged where the touches were, at the end of the run"
+
+
+def _again(args: argparse.Namespace, *more: object, runs: Sequence[str] = ()) -> str:
+    """The same diagnosis with further words and runs, into another folder."""
+    same = ["--standard", args.standard] if args.standard else []
+    same += ["--auto"] if args.auto else []
+    return called("diagnose", *args.run_files, *runs, *same, *more, "-o", f"{args.output}-2")
 
 
 def _last_state(found: Diagnosis) -> list[str]:
@@ -166,16 +174,15 @@ def _probed(found: Diagnosis) -> list[str]:
 
 def _unexplained(args: argparse.Namespace, found: Diagnosis) -> tuple[str, str]:
     """A law gets a name; where none was looked for it is learnt, where there is none, measure."""
-    again = f"{args.output}-2"
     if found.laws is None:
         words = called("learn", *args.run_files, "-o", f"{args.output}-law")
         return words, "a law of what remains, from the run itself"
     if not found.laws.laws:
-        words = called("diagnose", *args.run_files, "again.csv", "-o", again)
+        words = _again(args, runs=("again.csv",))
         return words, "after another run that records what could be the cause"
     effect = Path(args.output) / "effect.py"
     named = [word for name in found.laws.effect_names for word in ("--add", name)]
-    words = called("diagnose", *args.run_files, "--effects", effect, *named, "-o", again)
+    words = _again(args, "--effects", effect, *named)
     return words, "the law by the name that you give it in effect.py"
 
 
