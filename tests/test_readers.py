@@ -155,3 +155,12 @@ def test_primes_of_a_word_processor_are_primes() -> None:
 def test_a_line_that_is_no_toml_says_what_is_missing(line, expected) -> None:
     with pytest.raises(BadFile, match=re.escape(expected)):
         parse_toml(f"{line}\n", "project.toml")
+
+
+def test_a_whole_number_too_large_for_a_float_is_refused_in_a_saved_law(cases) -> None:
+    reader, valid = cases["law"]
+    damaged = re.sub(r'("mean": \[\s*)[^,\]\s]+', rf"\g<1>1{'0' * 400}", valid, count=1)
+    assert damaged != valid
+    reader.path.write_text(damaged, encoding="utf-8")
+    with pytest.raises(BadFile, match="as matstd wrote it"):
+        reader.read(reader.path)

@@ -139,7 +139,14 @@ def read_law(path: str | Path) -> SavedLaw:
         )
     except json.JSONDecodeError as error:
         raise BadFile(path, f"line {error.lineno}", error.msg, "a thermal.json of ours") from None
-    except (KeyError, TypeError, ValueError, AttributeError, RecursionError) as error:
+    except (
+        KeyError,
+        TypeError,
+        ValueError,
+        OverflowError,
+        AttributeError,
+        RecursionError,
+    ) as error:
         if isinstance(error, BadFile):
             raise
         raise BadFile(path, "law", repr(error)[:200], "a thermal.json as matstd wrote it") from None
