@@ -2,8 +2,11 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
+from made_up import run_of
 
+from matstd.twin.effects.backlash import measured_component
 from matstd.twin.errors import BadFile
 from matstd.twin.files.run_file import read_run
 from matstd.twin.files.run_writer import run_text
@@ -56,3 +59,11 @@ def test_the_instrument_stands_in_the_head_of_a_run(run, tmp_path):
     )
     with pytest.raises(BadFile, match=r"instrument: found 'lidar', expected .*.tracker."):
         read_run(path, chain)
+
+
+@pytest.mark.parametrize("across", [0, 1, 2])
+def test_the_reversal_is_that_of_the_component_that_is_read(across) -> None:
+    """A gauge beside an axis along X reads EXX, EYX or EZX, by its direction alone."""
+    touches = run_of(np.arange(5.0), np.zeros(5)).touches
+    seen = replace(touches, normal=np.tile(np.eye(3)[across], (5, 1)))
+    assert measured_component(seen, "X") == across
