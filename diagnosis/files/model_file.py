@@ -12,6 +12,7 @@ from pydantic import Field
 from matstd.diagnosis.accuracy import Promise
 from matstd.diagnosis.files.curve_table import CurveEntry
 from matstd.diagnosis.files.determined import Determined, DeterminedEntry
+from matstd.diagnosis.files.unknown_elsewhere import kept_law, unknown_elsewhere
 from matstd.diagnosis.fit import Learnt, Prior, Reported, Role, file_unit
 from matstd.diagnosis.regression import Memory
 from matstd.diagnosis.remarks import EffectOfOtherRun
@@ -25,7 +26,6 @@ from matstd.twin.files import (
     read_text,
 )
 from matstd.twin.frames import Array
-from matstd.twin.laws import law_of
 from matstd.twin.library import owner_of, parse_effect
 from matstd.twin.machine import Chain
 from matstd.twin.model import Effect, Model, is_tunable
@@ -149,35 +149,22 @@ class SavedModel(Displayed):
     left_out: tuple[EffectOfOtherRun, ...] = ()
 
     def without(self, left_out: Sequence[EffectOfOtherRun]) -> "SavedModel":
-        """The model without some effects, as far as what is known of the others goes.
-
-        The driver of a law that belongs to another run may act in this one as much: in its place
-        stands zero with its size as uncertainty.
-        """
+        """The model without some effects; what their drivers may do is in their place."""
         names = {one.effect.name for one in left_out}
         if not names:
             return self
         kept = np.array([e.name not in names for e, _ in self.model.parameters])
         root = self.estimates.root[kept]
         known = Prior.of_estimates(self.estimates.mean[kept], root @ root.T)
-        margins: dict[str, Effect] = {}
-        for one in left_out:
-            law = law_of(one.effect)
-            if law is not None:
-                theta = self.estimates.mean[[e is law for e, _ in self.model.parameters]]
-                margin = law.elsewhere(theta)
-                margins[margin.name] = margin
-        unknown = tuple(margins.values())
-        added = sum(len(e.parameters) for e in unknown)
+        margins = unknown_elsewhere(self.model, self.estimates.mean, left_out)
+        unknown = Prior.of_effects(margins)
         effects = [e for e in self.model.effects if e.name not in names]
         return replace(
             self,
-            model=Model(self.model.chain, (*effects, *unknown)),
-            estimates=known.joined(Prior.of_effects(unknown)),
-            from_inner=np.pad(self.from_inner[kept], ((0, added), (0, 0))),
-            reported={
-                name: numbers for name, numbers in self.reported.items() if name not in names
-            },
+            model=Model(self.model.chain, (*effects, *margins)),
+            estimates=known.joined(unknown),
+            from_inner=np.pad(self.from_inner[kept], ((0, len(unknown)), (0, 0))),
+            reported={name: said for name, said in self.reported.items() if name not in names},
             left_out=tuple(left_out),
         )
 
@@ -257,9 +244,7 @@ def parsed_model(
     effects, mean, factors = [], [], []
     for i, entry in enumerate(table.effect):
         effect = _effect(entry, chain, by_name, path, f"effect[{i}]")
-        law = law_of(effect)
-        if law is not None:
-            effect = replace(law, is_of_run=bool(entry.run))
+        effect = kept_law(effect, bool(entry.run))
         keys = parameter_keys(effect)
         expected = [key for key, _ in keys]
         # the covariance has no names, so the order of the estimates must be exact

@@ -12,10 +12,10 @@ from matstd.report.laws.law_words import (
     limits_sentences,
     no_law_sentence,
     rival_sentence,
-    second_run_sentence,
     short_words,
     size_words,
 )
+from matstd.report.laws.run_words import second_run_sentence
 from matstd.report.laws.visit_words import visit_lines, visit_sentences
 
 __all__ = [

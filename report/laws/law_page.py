@@ -19,13 +19,12 @@ from matstd.report.laws.law_words import (
     limits_sentences,
     looks_like,
     no_law_sentence,
-    odds_words,
     place_words,
     rival_sentence,
     rivals_sentence,
-    second_run_sentence,
     variable_words,
 )
+from matstd.report.laws.run_words import odds_words, second_run_sentence
 from matstd.report.laws.visit_words import visit_section
 from matstd.report.layout import KeyFigure, LiveView, Page, Picture, Section, Table, write_page
 from matstd.report.numbers import digits, microns, sentence

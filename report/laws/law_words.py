@@ -11,12 +11,12 @@ from matstd.diagnosis.laws import (
     Learning,
     LearntLaw,
     Refusal,
-    SecondRun,
     amplitudes,
     places,
 )
-from matstd.report.numbers import digits, microns, with_uncertainty
-from matstd.twin.laws import CLOCK, Carrier, Driver, Factor, Law, drivers
+from matstd.report.laws.run_words import odds_words, run_sentence
+from matstd.report.numbers import microns, with_uncertainty
+from matstd.twin.laws import Carrier, Driver, Factor, Law, drivers
 from matstd.twin.units import DEG, HOUR, MINUTE, UM, URAD
 from matstd.twin.words import listed
 
@@ -71,15 +71,6 @@ _SHAPES = {
     "course": "what is not known of a driver that was not recorded",
     "curve": "a smooth curve without a formula",
 }
-_OF_ONE_RUN = (
-    "{what} belongs to this run. Other runs are predicted without it, and less surely by its size. "
-    "Record {record} as a column of the run, and learn again."
-)
-_SWITCHES = ("step", "window", "square", "saw", "sine", "pulse", "plateau", "ramp")
-"""Shapes over time of something that was switched or changed."""
-
-_LEVEL = "a temperature, a speed or a level that moves as it does"
-
 FEW_TOUCHES = 60
 """Below it a run leaves few degrees of freedom beside geometry and set-ups."""
 
@@ -297,24 +288,8 @@ def law_notes(learning: Learning) -> list[str]:
     out = []
     for one in learning.laws:
         out += [library_sentence(one), rivals_sentence(one), looks_like(one.law)]
-        out.append("" if one.travels else _of_one_run(one))
+        out.append("" if one.travels else run_sentence(one))
     return [line for line in (*out, *limits_sentences(learning)) if line]
-
-
-def _of_one_run(one: LearntLaw) -> str:
-    """Why a law is not expected in other runs, and what to record."""
-    clocked = [f.shape for f in one.law.factors if f.driver.name == CLOCK]
-    if not clocked:
-        odds = odds_words(one.run_odds)
-        what = f"A driver that was not recorded explains this run as well (odds {odds}); the law"
-    elif any(shape.relaxes for shape in clocked):
-        what = "It had not come to rest when the run ended, may be a drift, and"
-    elif any(shape.word in _SWITCHES for shape in clocked):
-        record = "what switches or was changed (coolant, a pump, a cooler, a stylus, a clamp)"
-        return _OF_ONE_RUN.format(what="A driver that was not recorded and switches", record=record)
-    else:
-        what = "A driver that was not recorded"
-    return _OF_ONE_RUN.format(what=what, record=_LEVEL)
 
 
 def limits_sentences(learning: Learning) -> list[str]:
@@ -346,14 +321,6 @@ def learnt_words(learning: Learning) -> str:
         return "no law of any carrier and variable explains it"
     word = "learnt law" if len(learning.laws) == 1 else "learnt laws"
     return f"{word}: {'; '.join(short_words(one.law) for one in learning.laws)}"
-
-
-def odds_words(log_odds: float) -> str:
-    """`40 : 1`."""
-    if log_odds > math.log(1e6):
-        return "> 10⁶ : 1"
-    value = math.exp(max(log_odds, 0.0))
-    return f"{digits(value, 2) if value < 100 else f'{round(value, -1):.0f}'} : 1"
 
 
 def rivals_sentence(one: LearntLaw) -> str:
@@ -391,19 +358,3 @@ def held_out_sentence(learning: Learning) -> str:
         f"Touches of poses left out are predicted with {microns(first.after)} rms instead of "
         f"{microns(first.before)}."
     )
-
-
-def second_run_sentence(second: SecondRun) -> str:
-    """What a second run says."""
-    words = f"A second run ({second.touches} touches): {microns(second.without)} without the law"
-    if second.clocked is None:
-        words += f", {microns(second.learnt)} with it"
-        if second.is_better:
-            return f"{words}."
-        return f"{words}: the law does not hold there. Do not use it to predict."
-    if second.learnt != second.without:
-        words += f", {microns(second.learnt)} with those that hold for every run"
-    words += f", {microns(second.clocked)} if what the run did not record kept its times"
-    if second.is_clock_kept:
-        return f"{words}: it did. What drives it begins with the run or its program."
-    return f"{words}: it did not."

@@ -5,9 +5,10 @@ without a cause. `driver` gives variables of touches by name, `shape` the gramma
 where their parameters are scanned.
 """
 
+from matstd.twin.laws.carrier import Carrier, carrier_of
 from matstd.twin.laws.driver import ON_BALL, Driver, driver_of, drivers
 from matstd.twin.laws.grids import WORDS, grid, shapes_of
-from matstd.twin.laws.law import CLOCK, KIND, Carrier, Factor, Law, carrier_of, law_of
+from matstd.twin.laws.law import CLOCK, KIND, Factor, Law, law_of
 from matstd.twin.laws.shape import SHAPES, Shape, curve_columns, play
 
 __all__ = [

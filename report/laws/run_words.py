@@ -1,0 +1,56 @@
+"""Whether a law is expected in another run, in words, and what a second run says of it."""
+
+import math
+
+from matstd.diagnosis.laws import LearntLaw, SecondRun
+from matstd.report.numbers import digits, microns
+from matstd.twin.laws import CLOCK
+
+_OF_ONE_RUN = (
+    "{what} belongs to this run. Other runs are predicted without it, and less surely by its size. "
+    "Record {record} as a column of the run, and learn again."
+)
+_SWITCHES = ("step", "window", "square", "saw", "sine", "pulse", "plateau", "ramp")
+"""Shapes over time of something that was switched or changed."""
+
+_LEVEL = "a temperature, a speed or a level that moves as it does"
+
+
+def odds_words(log_odds: float) -> str:
+    """`40 : 1`."""
+    if log_odds > math.log(1e6):
+        return "> 10⁶ : 1"
+    value = math.exp(max(log_odds, 0.0))
+    return f"{digits(value, 2) if value < 100 else f'{round(value, -1):.0f}'} : 1"
+
+
+def run_sentence(one: LearntLaw) -> str:
+    """Why a law is not expected in other runs, and what to record."""
+    clocked = [f.shape for f in one.law.factors if f.driver.name == CLOCK]
+    if not clocked:
+        odds = odds_words(one.run_odds)
+        what = f"A driver that was not recorded explains this run as well (odds {odds}); the law"
+    elif any(shape.relaxes for shape in clocked):
+        what = "It had not come to rest when the run ended, may be a drift, and"
+    elif any(shape.word in _SWITCHES for shape in clocked):
+        record = "what switches or was changed (coolant, a pump, a cooler, a stylus, a clamp)"
+        return _OF_ONE_RUN.format(what="A driver that was not recorded and switches", record=record)
+    else:
+        what = "A driver that was not recorded"
+    return _OF_ONE_RUN.format(what=what, record=_LEVEL)
+
+
+def second_run_sentence(second: SecondRun) -> str:
+    """What a second run says."""
+    words = f"A second run ({second.touches} touches): {microns(second.without)} without the law"
+    if second.clocked is None:
+        words += f", {microns(second.learnt)} with it"
+        if second.is_better:
+            return f"{words}."
+        return f"{words}: the law does not hold there. Do not use it to predict."
+    if second.learnt != second.without:
+        words += f", {microns(second.learnt)} with those that hold for every run"
+    words += f", {microns(second.clocked)} if what the run did not record kept its times"
+    if second.is_clock_kept:
+        return f"{words}: it did. What drives it begins with the run or its program."
+    return f"{words}: it did not."
