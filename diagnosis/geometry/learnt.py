@@ -158,8 +158,9 @@ def _row(
     values = [_of(fit, w) for w in every]
     is_known = [e.u * POLICY.determined_ratio < sd for e in values]
     usual = _usual(fit, one) if one.quantity in LOCATIONS else None
+    of_all = expected_size(fit, one.weights, stated)
     # what all errors may add up to at a line is no size that a line of such a machine has
-    expected = usual or expected_size(fit, one.weights, stated)
+    expected = usual or of_all
     # a residual that widens what is expected makes no size of what the run leaves open
     is_known = [k and _is_size(e, expected) for k, e in zip(is_known, values, strict=True)]
     fitted = set(fit.run.touches.run[fit.used])
@@ -191,6 +192,7 @@ def _row(
         course=course if steps else (),
         steps=tuple(steps),
         usual=usual,
+        added_up=of_all if usual else 0.0,
     )
 
 

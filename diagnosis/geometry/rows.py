@@ -36,6 +36,8 @@ class GeometryRow:
             does not determine it.
         steps: What changed into every run but the first; None where either is not determined.
         usual: For the line or zero of a rotary axis: usual size of the error that names it.
+        added_up: For such a line: standard deviation before the run of what all errors of the
+            machine add up to there. Angles of a linear axis far from its table bend its way.
         u_model: What the choice of the model contributes to the uncertainty of the estimate.
     """
 
@@ -53,12 +55,13 @@ class GeometryRow:
     course: tuple[Estimate | None, ...] = ()
     steps: tuple[Estimate | None, ...] = ()
     usual: float | None = None
+    added_up: float = 0.0
     u_model: float = 0.0
 
     @property
     def is_far(self) -> bool:
         """Whether it is a line or zero of a rotary axis far from where the machine file has it."""
-        if self.usual is None or not self.is_determined:
+        if self.usual is None or not self.is_determined or self._is_added_up:
             return False
         return abs(self.estimate.value) > POLICY.far_line * max(self.usual, self.estimate.u)
 
@@ -76,7 +79,13 @@ class GeometryRow:
     def is_beyond_expected(self) -> bool:
         """Whether it exceeds what such a machine was expected to have by more than chance."""
         bound = POLICY.clear_excess * float(np.hypot(self.expected, self.estimate.u))
-        return self.is_determined and abs(self.estimate.value) > bound
+        is_beyond = self.is_determined and abs(self.estimate.value) > bound
+        return is_beyond and not self._is_added_up
+
+    @property
+    def _is_added_up(self) -> bool:
+        """Whether ordinary errors of the machine may add up to this line of a rotary axis."""
+        return abs(self.estimate.value) <= POLICY.beyond_added_up * self.added_up
 
     @property
     def has_changed(self) -> bool:

@@ -90,10 +90,13 @@ class Policy:
             result. With less the expectation contributes more than a tenth, ``1 / 3^2``, to the
             estimate.
         far_line: Own standard uncertainties, and usual sizes of a location error, from which the
-            line of a rotary axis is far from where the machine file has it, whatever other errors
-            may add up to: of 64 lines of simulated machines of the class the farthest was 1.7 usual
-            sizes away. Beyond as many a number of the description is wrong; a smaller one is an
-            error of the machine or of the probe, and found as such.
+            line of a rotary axis is far from where the machine file has it: of 64 lines of simulated
+            machines of the class the farthest was 1.7 usual sizes away. Beyond as many a number of
+            the description is wrong; a smaller one is an error of the machine or of the probe, and
+            found as such.
+        beyond_added_up: Of what all ordinary errors add up to at a line, below which it is not far
+            either. Each error is counted with all of its forms at full size, while a machine has
+            about one: 1.5 are 2.6 standard deviations of that.
         log_odds_mistake: Log odds against a right description from which a mistake is named: five
             standard deviations of a number beside what its freedom costs.
         mistake_improvement: Factor by which undoing a mistake must bring down the held-out error or
@@ -160,6 +163,7 @@ class Policy:
     clear_change: float = 4.0
     determined_ratio: float = 3.0
     far_line: float = 5.0
+    beyond_added_up: float = 1.5
     log_odds_mistake: float = 15.0
     mistake_improvement: float = 2.0
     mistake_suspected: float = 3.0
