@@ -90,10 +90,10 @@ class Policy:
             result. With less the expectation contributes more than a tenth, ``1 / 3^2``, to the
             estimate.
         far_line: Own standard uncertainties, and usual sizes of a location error, from which the
-            line of a rotary axis is far from where the machine file has it: of 64 lines of simulated
-            machines of the class the farthest was 1.7 usual sizes away. Beyond as many a number of
-            the description is wrong; a smaller one is an error of the machine or of the probe, and
-            found as such.
+            line of a rotary axis is far from where the machine file has it: of 64 lines of machines
+            of the class that were simulated the farthest was 1.7 usual sizes away. Beyond as many a
+            number of the description is wrong; a smaller one is an error of the machine or of the
+            probe, and found as such.
         beyond_added_up: Of what all ordinary errors add up to at a line, below which it is not far
             either. Each error is counted with all of its forms at full size, while a machine has
             about one: 1.5 are 2.6 standard deviations of that.
