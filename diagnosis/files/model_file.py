@@ -10,9 +10,10 @@ import numpy as np
 from pydantic import Field
 
 from matstd.diagnosis.accuracy import Promise
+from matstd.diagnosis.files.covariance import covariance_of
 from matstd.diagnosis.files.curve_table import CurveEntry
 from matstd.diagnosis.files.determined import Determined, DeterminedEntry
-from matstd.diagnosis.files.unknown_elsewhere import kept_law, unknown_elsewhere
+from matstd.diagnosis.files.unknown_elsewhere import kept_law, repeated_laws, unknown_elsewhere
 from matstd.diagnosis.fit import Learnt, Prior, Reported, Role, file_unit
 from matstd.diagnosis.regression import Memory
 from matstd.diagnosis.remarks import EffectOfOtherRun
@@ -34,13 +35,6 @@ from matstd.twin.units import DEG, UM
 
 FORMAT, OLDER = "model/2", "model/1"
 """Version that is written, and one that is read: it has no hash of its machine."""
-
-LARGEST, SMALLEST = 1e12, 1e-300
-"""Variances of a file beyond the first (µm, µrad squared ...) are slips; of none below the second a
-root is taken."""
-
-MAX_ROUNDING = 1e-6
-"""By so much rounding may leave correlations of a file beyond one, or variances below zero."""
 
 
 class ReportedEntry(Table):
@@ -138,6 +132,7 @@ class SavedModel(Displayed):
         reported: Numbers of effects as reported of that run, by name.
         determined: What that run determines of the geometry, as it was reported.
         left_out: What the file has beside that and is not to be applied here.
+        repeated: Laws of another run that this one repeats, and that are applied.
     """
 
     model: Model
@@ -147,6 +142,7 @@ class SavedModel(Displayed):
     reported: dict[str, tuple[Reported, ...]]
     determined: tuple[Determined, ...] = ()
     left_out: tuple[EffectOfOtherRun, ...] = ()
+    repeated: tuple[EffectOfOtherRun, ...] = ()
 
     def without(self, left_out: Sequence[EffectOfOtherRun]) -> "SavedModel":
         """The model without some effects; what their drivers may do is in their place."""
@@ -219,7 +215,8 @@ def read_model(
     """Model with its estimates, as far as it is to be applied to some runs.
 
     A slip, a drift or a jump happened in the run that it was learnt from: it is in the model only
-    where that is the run. What belongs to a probe is in it where a run has the same probe.
+    where that is the run. What belongs to a probe is in it where a run has the same probe, a learnt
+    law where the touches of one run repeat it at the same times.
 
     Args:
         known: Effects whose names the library cannot read back, such as those with a prior of a
@@ -254,7 +251,7 @@ def parsed_model(
         effects.append(effect)
         mean += [entry.estimate[key] * factor for key, factor in keys]
         factors += [factor for _, factor in keys]
-    covariance = _covariance(table.covariance, np.array(factors), path)
+    covariance = covariance_of(table.covariance, np.array(factors), path)
     model = Model(chain, tuple(effects))
     whole = SavedModel(
         model=model,
@@ -264,7 +261,14 @@ def parsed_model(
         reported={entry.name: tuple(_reported(t) for t in entry.told) for entry in table.effect},
         determined=tuple(entry.determined() for entry in table.determined),
     )
-    return whole.without(list(_of_others(table, effects, [without_copies(run) for run in runs])))
+    seen = [without_copies(run) for run in runs]
+    others = list(_of_others(table, effects, seen))
+    if len(seen) != 1:
+        return whole.without(others)
+    repeated = repeated_laws(model, whole.estimates.mean, others, seen[0])
+    names = {one.effect.name for one in repeated}
+    rest = [one for one in others if one.effect.name not in names]
+    return replace(whole, repeated=repeated).without(rest)
 
 
 def _check_hash(source: SourceEntry, chain: Chain, path: str | Path) -> None:
@@ -366,35 +370,3 @@ def _effect(
 
 
 _INNER_FACTORS = {"": 1.0, "_min": 60.0, "_s": 1.0, "_mm": 1.0, "_deg": DEG}
-
-
-def _covariance(rows: list[list[float]], factors: Array, path: str | Path) -> Array:
-    """Covariance in base units from its lower triangle."""
-    n = len(factors)
-    if [len(row) for row in rows] != list(range(1, n + 1)):
-        raise BadFile(
-            path, "covariance", f"{len(rows)} rows", f"the lower triangle of {n} parameters"
-        )
-    out = np.zeros((n, n))
-    for i, row in enumerate(rows):
-        out[i, : i + 1] = row
-        out[: i + 1, i] = row
-    _check_covariance(out, path)
-    return np.asarray(out * np.outer(factors, factors))
-
-
-def _check_covariance(matrix: Array, path: str | Path) -> None:
-    """Refuse numbers that no covariance has: correlations beyond one, variances below zero."""
-    variance = np.diag(matrix)
-    wrong = np.flatnonzero(~((variance >= 0.0) & (variance < LARGEST)))
-    if len(wrong):
-        i = int(wrong[0])
-        raise BadFile(path, f"covariance[{i}][{i}]", matrix[i, i], "a variance")
-    sd = np.sqrt(np.maximum(variance, SMALLEST))
-    correlation = matrix / np.outer(sd, sd)
-    if np.abs(correlation).max(initial=0.0) > 1.0 + MAX_ROUNDING:
-        i, j = (int(k) for k in np.argwhere(np.abs(correlation) > 1.0 + MAX_ROUNDING)[0])
-        expected = "a covariance within what the two variances allow"
-        raise BadFile(path, f"covariance[{max(i, j)}][{min(i, j)}]", matrix[i, j], expected)
-    if np.linalg.eigvalsh(correlation).min(initial=0.0) < -MAX_ROUNDING * len(matrix):
-        raise BadFile(path, "covariance", "variances below zero of sums", "a covariance")

@@ -8,6 +8,7 @@ formula is kept where it predicts at least as well as the curve (`search`).
 
 from matstd.diagnosis.laws.acceptance import HeldOut, Refusal
 from matstd.diagnosis.laws.estimates import (
+    REPEATED,
     Estimate,
     SecondRun,
     amplitudes,
@@ -27,6 +28,7 @@ from matstd.diagnosis.laws.remainder import learn_remainder
 
 __all__ = [
     "POLICY",
+    "REPEATED",
     "Estimate",
     "HeldOut",
     "LawPolicy",

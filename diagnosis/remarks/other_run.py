@@ -8,12 +8,13 @@ from matstd.twin.model import Effect
 
 @dataclass(frozen=True, slots=True)
 class EffectOfOtherRun:
-    """An effect that a saved model has of another run, and that is not applied.
+    """An effect that a saved model has of another run, and that is not applied as a rule.
 
     Attributes:
         owner: What it belongs to, as its kind says: "probe" or "run".
         inner: Its inner parameters, as in the file.
         share: What it made there, rms, mm, beside where the standard stood; 0 where unknown.
+        is_repeated: Whether this run shows a law of that one, at the same times: it is applied.
     """
 
     effect: Effect
@@ -21,3 +22,4 @@ class EffectOfOtherRun:
     inner: Mapping[str, float]
     run: str
     share: float
+    is_repeated: bool = False

@@ -48,7 +48,7 @@ class {name}(Declared):
 {owner})
 '''
 
-OF_ITS_RUN = '    belongs_to="run",  # its driver was not recorded: no other run repeats it\n'
+OF_ITS_RUN = '    belongs_to="run",  # its driver was not recorded: other runs need not repeat it\n'
 
 CURVE_KNOTS, CURVE_FLANKS = 41, 3.0
 """Knots of a table that stands for a curve without a formula, and correlation lengths by which it

@@ -7,7 +7,8 @@ from matstd.report.numbers import digits, microns
 from matstd.twin.laws import CLOCK
 
 _OF_ONE_RUN = (
-    "{what} belongs to this run. Other runs are predicted without it, and less surely by its size. "
+    "{what} belongs to this run. Other runs are predicted without it, and less surely by its size, "
+    "unless their touches show it at the same times. "
     "Record {record} as a column of the run, and learn again."
 )
 _SWITCHES = ("step", "window", "square", "saw", "sine", "pulse", "plateau", "ramp")

@@ -94,6 +94,11 @@ def _of_another_run(r: noticed.EffectOfOtherRun) -> str:
     whose = f"the probe of {r.run}" if r.owner == "probe" else r.run
     size = f", where it contributed {um(r.share)} rms" if r.share else ""
     words = f"{title_of(r.effect).text} ({', '.join([r.effect.name, *inner])})"
+    if r.is_repeated:
+        return (
+            f"{words} was learnt from {whose}{size}; this run repeats it at the same times, and it "
+            "is applied: what drives it begins with the run or its program"
+        )
     return f"{words} belongs to {whose}{size}: it is not applied here"
 
 

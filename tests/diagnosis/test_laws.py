@@ -47,7 +47,7 @@ from matstd.diagnosis.laws.space import Space
 from matstd.report.laws import limits_sentences, no_law_sentence, second_run_sentence
 from matstd.report.run_view import diagnosis_step
 from matstd.report.verdict import part_lines
-from matstd.report.words import verdict_sentence
+from matstd.report.words import remark_sentence, verdict_sentence
 from matstd.twin.library import ordinary_model, parse_effect
 from matstd.twin.model import Model, columns
 from matstd.twin.units import UM
@@ -80,11 +80,18 @@ def test_a_law_of_the_clock_of_one_run_is_not_expected_in_another(stylus) -> Non
     texts = law_case(
         np.random.default_rng(5), "hmc1995", "stylus", (30.0, 31.0), 4, is_clock_kept=True
     )
-    kept = second_run(found, read_back(texts[1], MACHINES["hmc1995"]))
+    repeating = read_back(texts[1], MACHINES["hmc1995"])
+    kept = second_run(found, repeating)
     assert kept.clocked < 1.1 * true
     assert kept.without > 1.3 * true
     assert kept.is_clock_kept
     assert "kept its times: it did. What drives it" in second_run_sentence(kept)
+    text = model_text(found.saved, "run")
+    applied, none = (parsed_model(text, "model.toml", runs=[r]) for r in (repeating, second))
+    assert [one.effect.name for one in applied.repeated] == [found.laws[0].law.name]
+    assert applied.left_out == () == none.repeated
+    assert "repeats it at the same times" in remark_sentence(applied.repeated[0])
+    assert compare(repeating, applied).rms < 1.1 * true
 
 
 def test_a_law_that_begins_with_the_set_up_predicts_a_second_run() -> None:
