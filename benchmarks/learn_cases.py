@@ -9,6 +9,8 @@
 
 Laws that follow a clock which no column records meet the second run at another time; `--same-clock`
 gives them the time of the first. They are counted apart: a prediction without them is right.
+`compare` applies such a law where the touches of the second run show it; what that leaves is the
+last of four errors.
 
 The second run is judged with the set-ups and the ordinary model refitted there: what the learnt law
 leaves of it, against what is left without any law and what the true law leaves (of simulated cases
@@ -18,7 +20,7 @@ the same run without the law; else the stated noise).
 import json
 import tempfile
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -30,6 +32,7 @@ from simulator_experiment import MACHINES
 from simulator_further_laws import FURTHER, OUTSIDE
 from simulator_laws import FAMILIES, law_case
 
+from matstd.diagnosis.files import model_text, parsed_model
 from matstd.diagnosis.laws import Learning, learn_laws
 from matstd.twin.files import read_run
 from matstd.twin.laws import Law, carrier_of
@@ -60,6 +63,7 @@ class Score:
     learnt: float
     true: float
     seconds: float
+    compared: float
     is_clocked: bool = False
 
     @property
@@ -73,6 +77,11 @@ class Score:
     @property
     def is_half(self) -> bool:
         return self.learnt**2 - self.true**2 < 0.5 * (self.none**2 - self.true**2)
+
+    @property
+    def as_compared(self) -> "Score":
+        """With the laws that `compare` applies to the second run."""
+        return replace(self, learnt=self.compared)
 
 
 def left_of(run: Run, deviation: np.ndarray, ordinary: Ordinary) -> float:
@@ -123,6 +132,12 @@ def score(folder: Path) -> Score:
     ordinary = Ordinary(second.touches)
     none = left_of(second, second.deviation, ordinary)
     learnt = left_of(second, second.deviation - found.predicted(second), ordinary)
+    saved = parsed_model(model_text(found.saved, "run.csv"), "model.toml", runs=[second])
+    repeated = {one.effect.name for one in saved.repeated}
+    own = np.array([effect.name in repeated for effect, _ in saved.model.parameters])
+    clocked = saved.model.columns(second.touches)[:, own] @ saved.estimates.mean[own]
+    predicted = found.predicted(second) + clocked
+    compared = left_of(second, second.deviation - predicted, ordinary)
     free = folder / "run_test_free.csv"
     true = truth["noise_um"]
     if free.exists():
@@ -138,7 +153,9 @@ def score(folder: Path) -> Score:
     planted = " + ".join(f"{law['family']} {law['carrier']}" for law in hidden) or "-"
     law_names = ", ".join(names) or "-"
     is_clocked = any(law.get("clocked", False) for law in hidden)
-    return Score(folder.name, planted, law_names, *right, none, learnt, true, seconds, is_clocked)
+    return Score(
+        folder.name, planted, law_names, *right, none, learnt, true, seconds, compared, is_clocked
+    )
 
 
 def make(
@@ -193,7 +210,8 @@ def show(one: Score) -> None:
     verdict = "WORSE" if one.is_worse else verdict
     print(
         f"{one.name:32} {marks} {verdict:5} none {one.none:6.2f} learnt {one.learnt:6.2f} "
-        f"true {one.true:5.2f} µm {one.seconds:5.1f} s  {one.truth} -> {one.found}",
+        f"true {one.true:5.2f} compared {one.compared:6.2f} µm {one.seconds:5.1f} s  "
+        f"{one.truth} -> {one.found}",
         flush=True,
     )
 
@@ -210,6 +228,9 @@ def counted(laws: list[Score]) -> str:
         ),
         "half of the excess": sum(s.is_half for s in others),
         "worse than none": sum(s.is_worse for s in laws),
+        f"as compared, of {len(laws)} within 10 %": sum(s.as_compared.is_predicted for s in laws),
+        "half": sum(s.as_compared.is_half for s in laws),
+        "worse": sum(s.as_compared.is_worse for s in laws),
     }
     return f"{len(laws)} laws: {', '.join(f'{name} {n}' for name, n in counts.items())}"
 
@@ -246,7 +267,8 @@ def main() -> None:
     seconds = [s.seconds for s in scores]
     print(
         f"{counted(laws)}; outside the grammar {counted(outside)}; without their driver "
-        f"{len(deleted)}: worse than none {sum(s.is_worse for s in deleted)}; false "
+        f"{len(deleted)}: worse than none {sum(s.is_worse for s in deleted)}, as compared "
+        f"{sum(s.as_compared.is_worse for s in deleted)}; false "
         f"laws in {sum(s.found != '-' for s in empty)} of {len(empty)} empty runs; processor "
         f"{np.median(seconds):.1f} s, at most {max(seconds):.1f} s"
     )

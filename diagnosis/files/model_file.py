@@ -132,7 +132,7 @@ class SavedModel(Displayed):
         reported: Numbers of effects as reported of that run, by name.
         determined: What that run determines of the geometry, as it was reported.
         left_out: What the file has beside that and is not to be applied here.
-        repeated: Laws of another run that this one repeats, and that are applied.
+        repeated: Laws of another run that the touches of this one show, too; they are applied.
     """
 
     model: Model
@@ -216,7 +216,7 @@ def read_model(
 
     A slip, a drift or a jump happened in the run that it was learnt from: it is in the model only
     where that is the run. What belongs to a probe is in it where a run has the same probe, a learnt
-    law where the touches of one run repeat it at the same times.
+    law where the touches of one run show it, too.
 
     Args:
         known: Effects whose names the library cannot read back, such as those with a prior of a

@@ -1,6 +1,7 @@
 """Numbers of a law with their uncertainties, and what a second run says of it."""
 
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -163,15 +164,19 @@ REPEATED = 0.95
 error larger, and none makes it a little smaller."""
 
 
+def left_beside(known: Array | float, run: Run, model: Model) -> float:
+    """Root mean square that a model fitted anew leaves beside known deviations, mm.
+
+    It is per degree of freedom; raises NotEnoughData.
+    """
+    fit = fit_run(replace(run, deviation=run.deviation - known), model)
+    return float(np.median(run.u)) * fit.noise.chi2_ratio**0.5
+
+
 def second_run(learning: Learning, run: Run) -> SecondRun:
     """How well the laws predict another run; raises NotEnoughData."""
     run = with_commanded(without_copies(run))
-    model: Model = learning.before.model
-
-    def left(known: Array | float) -> float:
-        fit = fit_run(replace(run, deviation=run.deviation - known), model)
-        return float(np.median(run.u)) * fit.noise.chi2_ratio**0.5
-
+    left = partial(left_beside, run=run, model=learning.before.model)
     is_bound = not all(one.travels for one in learning.laws)
     return SecondRun(
         touches=len(run),

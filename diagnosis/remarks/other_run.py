@@ -14,7 +14,7 @@ class EffectOfOtherRun:
         owner: What it belongs to, as its kind says: "probe" or "run".
         inner: Its inner parameters, as in the file.
         share: What it made there, rms, mm, beside where the standard stood; 0 where unknown.
-        is_repeated: Whether this run shows a law of that one, at the same times: it is applied.
+        is_repeated: Whether the touches of this run show a law of that one, too: it is applied.
     """
 
     effect: Effect

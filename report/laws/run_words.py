@@ -8,7 +8,7 @@ from matstd.twin.laws import CLOCK
 
 _OF_ONE_RUN = (
     "{what} belongs to this run. Other runs are predicted without it, and less surely by its size, "
-    "unless their touches show it at the same times. "
+    "unless their touches show it, too. "
     "Record {record} as a column of the run, and learn again."
 )
 _SWITCHES = ("step", "window", "square", "saw", "sine", "pulse", "plateau", "ramp")
@@ -27,7 +27,7 @@ def odds_words(log_odds: float) -> str:
 
 def run_sentence(one: LearntLaw) -> str:
     """Why a law is not expected in other runs, and what to record."""
-    clocked = [f.shape for f in one.law.factors if f.driver.name == CLOCK]
+    clocked = [f.shape for f in one.law.factors if f.driver == CLOCK]
     if not clocked:
         odds = odds_words(one.run_odds)
         what = f"A driver that was not recorded explains this run as well (odds {odds}); the law"

@@ -95,10 +95,7 @@ def _of_another_run(r: noticed.EffectOfOtherRun) -> str:
     size = f", where it contributed {um(r.share)} rms" if r.share else ""
     words = f"{title_of(r.effect).text} ({', '.join([r.effect.name, *inner])})"
     if r.is_repeated:
-        return (
-            f"{words} was learnt from {whose}{size}; this run repeats it at the same times, and it "
-            "is applied: what drives it begins with the run or its program"
-        )
+        return f"{words} was learnt from {whose}{size}: this run shows it, too, and it is applied"
     return f"{words} belongs to {whose}{size}: it is not applied here"
 
 

@@ -25,6 +25,7 @@ from matstd.diagnosis.files import (
     parsed_model,
     read_model,
 )
+from matstd.diagnosis.files.unknown_elsewhere import unknown_elsewhere
 from matstd.diagnosis.fit import fit_run
 from matstd.diagnosis.laws import (
     POLICY,
@@ -44,6 +45,7 @@ from matstd.diagnosis.laws.remainder import _determined
 from matstd.diagnosis.laws.screening import by_evidence
 from matstd.diagnosis.laws.search import Ground, _curves
 from matstd.diagnosis.laws.space import Space
+from matstd.diagnosis.remarks import EffectOfOtherRun
 from matstd.report.laws import limits_sentences, no_law_sentence, second_run_sentence
 from matstd.report.run_view import diagnosis_step
 from matstd.report.verdict import part_lines
@@ -90,7 +92,7 @@ def test_a_law_of_the_clock_of_one_run_is_not_expected_in_another(stylus) -> Non
     applied, none = (parsed_model(text, "model.toml", runs=[r]) for r in (repeating, second))
     assert [one.effect.name for one in applied.repeated] == [found.laws[0].law.name]
     assert applied.left_out == () == none.repeated
-    assert "repeats it at the same times" in remark_sentence(applied.repeated[0])
+    assert "this run shows it, too" in remark_sentence(applied.repeated[0])
     assert compare(repeating, applied).rms < 1.1 * true
 
 
@@ -124,6 +126,21 @@ def test_another_run_is_predicted_less_surely_by_the_size_of_the_law(stylus) -> 
     np.testing.assert_allclose(theta, 0.0)
     np.testing.assert_allclose(sd, 1.0)
     assert compare(second, other).u.mean() > 1.5 * compare(run, own).u.mean()
+
+
+def test_a_law_over_a_temperature_that_belongs_to_its_run_may_take_any_course_in_another(stylus):
+    """Its driver was not recorded: at all times it is as unsure as it was large."""
+    _, (run, second, _), _ = stylus
+    chain, touches = run.touches.chain, run.touches
+    law = replace(parse_effect("law(EZX,step T-spindle)", chain), is_of_run=True)
+    law = law.tuned(float(np.median(touches.temperature["spindle"])))
+    theta = np.array([7.0 * UM])
+    model = Model(chain, (law, *law.beyond(theta, touches)))
+    other = EffectOfOtherRun(law, "run", {}, "run", 0.0)
+    (course,) = unknown_elsewhere(model, np.append(theta, [0.0, 0.0]), [other])
+    amount = np.stack(course.amounts(second.touches), axis=1)
+    # by hand: either way by the height of the step, whatever the time
+    assert np.mean((amount**2).sum(axis=1)) == pytest.approx((7.0 * UM) ** 2, rel=0.1)
 
 
 def test_nothing_is_learnt_where_nothing_is_hidden() -> None:

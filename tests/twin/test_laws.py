@@ -103,7 +103,8 @@ def test_what_only_the_clock_of_a_run_shows_belongs_to_that_run(chain) -> None:
         "machine": ("law(EXX,log time)", "law(EXX,exp time,sine time)", "law(EXX,curve X)",
                     "law(shift,exp since-setup)", "law(EXX,square V-coolant)",
                     "law(EXX,course time)"),
-        "run": ("law(EXX,curve time)", "law(EXX,lin X,step time)", "law(EXX,square time)", "drift"),
+        "run": ("law(EXX,curve time)", "law(EXX,lin X,step time)", "law(EXX,square time)", "drift",
+                "law(EXX,step time,two-exp time)"),
     }  # fmt: skip
     for owner, names in texts.items():
         assert {name: owner_of(parse_effect(name, chain)) for name in names} == dict.fromkeys(
@@ -126,7 +127,7 @@ def test_a_driver_of_one_run_is_as_large_as_uncertain_in_another() -> None:
     """By hand: of 5 sin + 12 cos the size is 13, at every time of another run."""
     touches = made_up("hsm600u")
     law = parse_effect("law(EXX,sine time)", touches.chain).tuned(1000.0)
-    elsewhere = law.elsewhere(np.array([5.0e-3, 12.0e-3]))
+    elsewhere = law.elsewhere(np.array([5.0e-3, 12.0e-3]), np.nan)
     moved = np.stack(elsewhere.amounts(touches), axis=1)
     size = np.sqrt((moved**2).sum(axis=1).mean())
     assert [p.sd for p in elsewhere.parameters] == [1.0] * moved.shape[1]

@@ -6,9 +6,9 @@ where their parameters are scanned.
 """
 
 from matstd.twin.laws.carrier import Carrier, carrier_of
-from matstd.twin.laws.driver import ON_BALL, Driver, driver_of, drivers
+from matstd.twin.laws.driver import CLOCK, ON_BALL, Driver, driver_of, drivers
 from matstd.twin.laws.grids import WORDS, grid, shapes_of
-from matstd.twin.laws.law import CLOCK, KIND, Factor, Law, law_of
+from matstd.twin.laws.law import KIND, Factor, Law, law_of
 from matstd.twin.laws.shape import SHAPES, Shape, curve_columns, play
 
 __all__ = [

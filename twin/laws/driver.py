@@ -60,6 +60,10 @@ class Driver:
         return _recorded(touches, name)
 
 
+CLOCK = Driver("time", "time", "s", 0.0, HOUR)
+"""Time of a run, of which another run has no record: its instants are those of one run."""
+
+
 def driver_of(name: str, chain: Chain) -> Driver:
     """The variable of a name; raises UnknownEffect."""
     if name in chain.programmed_axes:

@@ -24,7 +24,7 @@ import numpy as np
 from matstd.twin.fields import check_count, refusal
 from matstd.twin.frames import Array
 from matstd.twin.laws.carrier import BIAS, Carrier, carrier_of
-from matstd.twin.laws.driver import Driver, driver_of
+from matstd.twin.laws.driver import CLOCK, Driver, driver_of
 from matstd.twin.laws.grids import grid
 from matstd.twin.laws.shape import SHAPES, Shape, curve_waves
 from matstd.twin.machine import Chain, Symbol
@@ -38,9 +38,6 @@ its own `size` is the prior."""
 
 BEYOND_LENGTH = 0.3
 """Share of its domain within which a law has lost its force beyond it."""
-
-CLOCK = "time"
-"""Variable of which another run has no record: its instants are those of one run."""
 
 AT_REST = 0.75
 """Share of its motion that a law of time makes in the first half of a run if it comes to rest in
@@ -131,14 +128,15 @@ class Law:
 
         Readings, temperatures, speeds, own columns, and times since a set-up, a pose or a change of
         speed come back in other runs. The time of a run does where the start of the run is what
-        drives the law: where it relaxes from there. An instant, a phase or a course within the run
-        is that of a driver which was not recorded.
+        drives the law: where it relaxes from there, with or without an oscillation. An instant, a
+        phase or a course within the run is that of a driver which was not recorded, even if it
+        relaxes: a step times an exponential predicted another run with 3.44 um instead of 2.35.
         """
         if self.is_of_run:
             return "run"
-        clocked = [f.shape for f in self.factors if f.driver.name == CLOCK]
-        is_own = clocked and not self.is_margin and not any(s.relaxes for s in clocked)
-        return "run" if is_own else "machine"
+        clocked = [f.shape for f in self.factors if f.driver == CLOCK]
+        is_of_start = any(s.relaxes for s in clocked) and not any(s.is_placed for s in clocked)
+        return "run" if clocked and not self.is_margin and not is_of_start else "machine"
 
     def rests(self, touches: Touches) -> bool:
         """Whether a law that relaxes from the start of a run has come to rest at its end.
@@ -147,35 +145,44 @@ class Law:
         """
         times = np.linspace(0.0, float(np.ptp(touches.since_start)), 201)
         for factor, own in self.parts:
-            if factor.driver.name == CLOCK and factor.shape.relaxes:
+            if factor.driver == CLOCK and factor.shape.relaxes:
                 moved = np.abs(np.diff(factor.shape.values(times, *self.places[own]), axis=1))
                 if np.any(moved[:, :100].sum(axis=1) < AT_REST * moved.sum(axis=1)):
                     return False
         return True
 
-    def elsewhere(self, theta: Array) -> "Law":
+    def elsewhere(self, theta: Array, largest: float) -> "Law":
         """What its driver may do in another run: zero, as unsure as it is large.
+
+        A law without the clock that belongs to its run stands for a driver that was not recorded,
+        of which another run may have any course.
 
         Args:
             theta: Its amplitudes, base units.
+            largest: Its largest amount in its run, base unit; asked of a law without the clock.
         """
+        others: list[tuple[Factor, tuple[float, ...]]] = []
+        if any(f.driver == CLOCK for f in self.factors):
+            others = [(f, self.places[own]) for f, own in self.parts if f.driver != CLOCK]
+            largest = self._largest_over_time(theta)
+        # waves of one size have this share of its square as variance, on average over the time
+        waves = 0.5 * (1.0 + curve_waves(COURSE_LENGTH)[0] ** 2)
+        factors = (*(f for f, _ in others), Factor(SHAPES["course"], CLOCK))
+        course = (0.0, COURSE_TIME, COURSE_LENGTH, largest / float(np.sqrt(waves)))
+        return Law(self.carrier, factors, (*(v for _, own in others for v in own), *course))
+
+    def _largest_over_time(self, theta: Array) -> float:
+        """Largest amount over the time per unit of its other factors, base unit."""
         times = np.linspace(0.0, COURSE_TIME, 401)
         ways = theta.reshape(self.carrier.count, *(len(f.shape.coefficients) for f in self.factors))
         moved = np.broadcast_to(ways[..., None], (*ways.shape, len(times)))
         for i, (factor, own) in enumerate(self.parts, start=1):
-            if factor.driver.name == CLOCK:
+            if factor.driver == CLOCK:
                 S = np.stack(factor.shape.values(times, *self.places[own]))
                 around = [1] * ways.ndim
                 around[i] = len(S)
                 moved = (moved * S.reshape(*around, -1)).sum(axis=i, keepdims=True)
-        # waves of one size have this share of its square as variance, on average over the time
-        waves = 0.5 * (1.0 + curve_waves(COURSE_LENGTH)[0] ** 2)
-        size = float(np.abs(moved).max() / np.sqrt(waves))
-        clock = next(f.driver for f in self.factors if f.driver.name == CLOCK)
-        others = [(f, self.places[own]) for f, own in self.parts if f.driver.name != CLOCK]
-        factors = (*(f for f, _ in others), Factor(SHAPES["course"], clock))
-        course = (0.0, COURSE_TIME, COURSE_LENGTH, size)
-        return Law(self.carrier, factors, (*(v for _, own in others for v in own), *course))
+        return float(np.abs(moved).max())
 
     @property
     def is_tensor(self) -> bool:

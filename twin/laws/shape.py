@@ -38,6 +38,11 @@ class Shape:
     relaxes: bool = False
 
     @property
+    def is_placed(self) -> bool:
+        """Whether it acts at a place, a phase or a course of its variable."""
+        return any(name[-1].isdigit() or name in ("phase", "low") for name in self.places)
+
+    @property
     def free(self) -> tuple[int, ...]:
         """Which of the parameters a run determines; the others follow from the machine."""
         return tuple(i for i, name in enumerate(self.places) if name not in FIXED)
@@ -236,8 +241,9 @@ SHAPES: dict[str, Shape] = {
                "1.0 - np.exp(-np.maximum((x - {zero}) / {w}, 0.0))",
                lambda x, zero, w: -np.expm1(-_after(x, zero, w)), "zero", "w", relaxes=True),
         _several("two-exp", "a exp(-(x - zero)/wa) + b exp(-(x - zero)/wb)",
-              ("np.exp(-(x - {zero}) / {wa})", "np.exp(-(x - {zero}) / {wb})"),
-              lambda x, zero, wa, wb: (np.exp(-(x - zero) / wa), np.exp(-(x - zero) / wb)),
+              ("np.exp(-np.maximum((x - {zero}) / {wa}, 0.0))",
+               "np.exp(-np.maximum((x - {zero}) / {wb}, 0.0))"),
+              lambda x, zero, *w: tuple(np.exp(-_after(x, zero, one)) for one in w),
               ("zero", "wa", "wb"), ("fast", "slow"), relaxes=True),
         _shape("log", "log(1 + (x - zero)/w)", "np.log1p(np.maximum(x - {zero}, 0.0) / {w})",
                lambda x, zero, w: np.log1p(np.maximum(x - zero, 0.0) / w), "zero", "w",
