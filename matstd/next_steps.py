@@ -89,8 +89,8 @@ def _thermal(args: Namespace) -> Step:
         law = Path(args.output) / "thermal.json"
         return called("thermal", "--law", law, "-o", "predicted", more="LOG.csv"), "another day"
     if args.probed is None:
-        told = ["--law", args.law, "--probed", "probed.csv", "-o", f"{args.output}-2"]
-        return called("thermal", *args.logs, *told), "with drifts probed on a standard"
+        options = ["--law", args.law, "--probed", "probed.csv", "-o", f"{args.output}-2"]
+        return called("thermal", *args.logs, *options), "with drifts probed on a standard"
     return called("effects", "drift-law"), "how the law enters a model, tables and the service"
 
 
@@ -141,8 +141,8 @@ def _uncertainty(args: Namespace) -> Step:
     if len(runs) >= FEWEST_OF_A_TREND:
         return called("trend", *runs, "-o", "trend"), "whether the machine stays as it was"
     task = ["--task", args.task] if args.task else []
-    told = ["--standard", args.standard, *task, "--model", args.model]
-    words = called("uncertainty", *runs, "again.csv", *told, "-o", "uncertainty.json")
+    options = ["--standard", args.standard, *task, "--model", args.model]
+    words = called("uncertainty", *runs, "again.csv", *options, "-o", "uncertainty.json")
     return words, "another visit: more degrees of freedom lower U"
 
 
@@ -171,22 +171,22 @@ def _after_playing(args: Namespace) -> Step:
     """A probing program is run on the twin; of a part program the errors are counted."""
     if args.standard:
         known = ["--errors", args.errors] if args.errors else []
-        told = ["--standard", args.standard, "--machine", args.machine, *known, "-o", "run.csv"]
-        return called("simulate", *args.program, *told), "what the twin measures with them"
+        options = ["--standard", args.standard, "--machine", args.machine, *known, "-o", "run.csv"]
+        return called("simulate", *args.program, *options), "what the twin measures with them"
     if not (args.errors or args.model):
-        told = ["--errors", "errors.toml", "--program", *args.program, "-o", "errors.html"]
-        return called("show", args.machine, *told), "the same with errors of the machine"
+        options = ["--errors", "errors.toml", "--program", *args.program, "-o", "errors.html"]
+        return called("show", args.machine, *options), "the same with errors of the machine"
     known = [args.model] if args.model else [args.machine, "--errors", args.errors]
-    told = ["--tool-length", f"{args.tool_length:g}", "--program", *args.program, "-o", "shares"]
-    return called("contributions", *known, *told), "which of the errors act along it"
+    options = ["--tool-length", f"{args.tool_length:g}", "--program", *args.program, "-o", "shares"]
+    return called("contributions", *known, *options), "which of the errors act along it"
 
 
 def _machines(args: Namespace) -> Step:
     if args.name is None:
         return "matstd machines hsm600u > my.toml", "the file of one; --errors: of its errors"
     if args.errors:
-        told = ["--errors", "my-errors.toml", "-o", "machine.html"]
-        return called("show", "my.toml", *told), "kept as my-errors.toml: the machine in motion"
+        options = ["--errors", "my-errors.toml", "-o", "machine.html"]
+        return called("show", "my.toml", *options), "kept as my-errors.toml: the machine in motion"
     return called("show", "my.toml", "-o", "machine.html"), "kept as my.toml: the machine in motion"
 
 

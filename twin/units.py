@@ -21,7 +21,7 @@ WHOLE_DEGREES, ROUNDING = 5.0, 0.1
 within the second, degrees, or within half of their last decimal."""
 MIN_DECIMALS = 2
 """Decimals of an angle in radians: with one, 5.7 degrees apart, anything may be meant."""
-TOOL_LENGTH = 160.0  # usual one from the gauge point to the tip, mm
+USUAL_TOOL_LENGTH = 160.0  # usual one from the gauge point to the tip, mm
 OTHERS = {
     "mm": (("metres", 1e3), ("µm", 1e-3)),
     "µm": (("mm", 1e3), ("nm", 1e-3)),

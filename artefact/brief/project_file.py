@@ -180,7 +180,8 @@ def read_project(path: str | Path, montecarlo: Mapping[str, float] | None = None
     remarks = [f"{path}: {old} is now called {new} and was read as such" for new, old in renamed]
     try:
         table = checked(ProjectTable, data, path)
-        refuse_unit_slips(table, path)  # what contradicts a slip contradicts what nobody meant
+        # first: a number in a wrong unit also contradicts other keys
+        refuse_unit_slips(table, path)
         return _resolved(table, path, tuple(remarks))
     except BadFile as error:
         raise as_written(error, dict(renamed)) from error

@@ -18,7 +18,7 @@ from matstd.twin.units import DEG
 CONTACT_DEPTH = 0.1
 """Depth up to which bodies count as touching, mm: a clamp lies on what it holds."""
 
-SAME_PLACE = 1.0
+ONE_SETUP = 1.0
 """Distance up to which two set-ups are one, mm, if they are turned by less than a degree."""
 
 _ARC = 17  # corners of the hull on each rounded corner: 0.03 mm inside one of 25 mm
@@ -81,7 +81,7 @@ def same_place(setups: Sequence[Setup], setup: Setup) -> str:
     for other in takewhile(lambda one: one.name != setup.name, setups):
         moved = inverse(other.T_table_artefact) @ setup.T_table_artefact
         turned = np.abs(fixed_xyz_angles(moved[:3, :3])).max()
-        if np.linalg.norm(moved[:3, 3]) < SAME_PLACE and turned < DEG:
+        if np.linalg.norm(moved[:3, 3]) < ONE_SETUP and turned < DEG:
             return other.name
     return ""
 

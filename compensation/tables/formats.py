@@ -131,21 +131,21 @@ def refuse_harmful(verified: VerifiedTables) -> None:
 
 
 def _iso(errors: MachineErrors, datum: Datum, _: Array) -> Tables:
-    return sampled(errors, datum, iso_csv.MOST_POINTS)
+    return sampled(errors, datum, iso_csv.ISO_POINTS)
 
 
 def _cec(errors: MachineErrors, datum: Datum, q: Array) -> Tables:
-    made = along_axes(errors, datum, sinumerik_cec.MOST_POINTS, True)
+    made = along_axes(errors, datum, sinumerik_cec.CEC_POINTS, True)
     most = sinumerik_cec.PER_AXIS * len(errors.chain.programmed_axes)
     return most_useful(made, errors, datum, q, most)
 
 
 def _comp(errors: MachineErrors, datum: Datum, q: Array) -> Tables:
-    return harmless(along_axes(errors, datum, linuxcnc_comp.MOST_POINTS, False), errors, datum, q)
+    return harmless(along_axes(errors, datum, linuxcnc_comp.COMP_POINTS, False), errors, datum, q)
 
 
 def _com(errors: MachineErrors, datum: Datum, _: Array) -> Tables:
-    return sampled(errors, datum, heidenhain_com.MOST_POINTS).positioning()
+    return sampled(errors, datum, heidenhain_com.COM_POINTS).positioning()
 
 
 FORMATS: Mapping[str, Format] = {

@@ -16,7 +16,7 @@ from matstd.compensation.tables.header import Header
 from matstd.twin.errors import BadFile
 from matstd.twin.machine import Chain
 
-MOST_POINTS = 256  # points of a table (TNC 407 to iTNC 530)
+COM_POINTS = 256  # points of a table (TNC 407 to iTNC 530)
 
 _ROW = re.compile(r"\s*\d+\s")
 

@@ -17,7 +17,7 @@ from matstd.twin.frames import Array
 from matstd.twin.machine import LETTERS, Chain, Family, Symbol
 
 NAME = "iso230.csv"
-MOST_POINTS = 1025
+ISO_POINTS = 1025
 """Points of an axis; five axes and their location errors stay within some thousand records."""
 
 _COMMENT = "//"

@@ -13,7 +13,7 @@ from matstd.compensation.tables.header import Header
 from matstd.twin.errors import BadFile
 from matstd.twin.machine import Chain, Link
 
-MOST_POINTS = 256
+COMP_POINTS = 256  # points of a table that LinuxCNC reads
 
 
 def write(tables: AxisTables, head: Header) -> dict[str, str]:

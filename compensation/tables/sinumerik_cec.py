@@ -15,7 +15,7 @@ from matstd.twin.errors import BadFile
 from matstd.twin.machine import Chain
 
 NAME = "NC_CEC.INI"
-MOST_POINTS = 257  # points of a table; MD18342 says how many a control holds in all
+CEC_POINTS = 257  # points of a table; MD18342 says how many a control holds in all
 PER_AXIS = 2  # tables per axis that a control holds
 
 _VALUE = re.compile(r"\$AN_CEC\[(\d+),(\d+)\]=([-+\d.eE]+)\Z")

@@ -1,9 +1,9 @@
 """What an effect needs to be found by the search, and not merely to exceed chance.
 
 Beside the chance of its own grid there are other effects that do nearly the same. One that does
-more than `ALIKE` of it may be named instead, if it was more likely before; then its grid decides
-the chance. One that does less must stay behind in evidence. Both are worked out for the expected
-evidence of every variant beside a signature of a given length.
+more than `REPRODUCED` of it may be named instead, if it was more likely before; then its grid
+decides the chance. One that does less must stay behind in evidence. Both are worked out for the
+expected evidence of every variant beside a signature of a given length.
 """
 
 from collections.abc import Iterator
@@ -15,7 +15,7 @@ from matstd.diagnosis.evidence.effect_signatures import IntArray, Signatures
 from matstd.diagnosis.policy import POLICY
 from matstd.twin.frames import Array
 
-ALIKE = 0.93**2
+REPRODUCED = 0.93**2
 """Share of a signature, as squares, that an effect must reproduce to be as right an answer."""
 
 POINTS_OF_GRID = 5
@@ -47,7 +47,7 @@ def needed_lengths(pool: Signatures, own: IntArray, prior: Array, E: Array, dof:
     k = pool.width[rivals].astype(float)
     chance = POLICY.false_alarm / (pool.tries[pool.owner[rivals]] * pool.tried)
     threshold = k * fdtri(k, dof, 1.0 - np.maximum(chance, 1e-15))
-    alike = (share > ALIKE) | (pool.owner[rivals] == pool.owner[own][:, None])
+    alike = (share > REPRODUCED) | (pool.owner[rivals] == pool.owner[own][:, None])
     begin = threshold[np.searchsorted(rivals, own)]
     out = np.full(len(own), np.inf)
     for factor in LENGTHS:

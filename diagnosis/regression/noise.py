@@ -12,7 +12,7 @@ from matstd.twin.record import Instrument, IntArray, Run
 PRIOR_DOF = 4.0
 """Weight of the stated uncertainty, in degrees of freedom: it decides where touches are few."""
 
-SAME_PLACE = 0.05
+REPLICATE_PLACE = 0.05
 """Touches whose calibrated points lie within this (mm) in one pose are replicates."""
 
 SAME_SHARE = 1e-3
@@ -63,7 +63,7 @@ def replicate_groups(run: Run, rows: BoolArray, in_any_pose: bool = False) -> In
     """
     t = run.touches
     extent = float(np.ptp(t.point, axis=0).max(initial=0.0))
-    place = min(SAME_PLACE, SAME_SHARE * extent) if extent > 0.0 else SAME_PLACE
+    place = min(REPLICATE_PLACE, SAME_SHARE * extent) if extent > 0.0 else REPLICATE_PLACE
     place = SAME_READING if t.instrument is Instrument.ENCODER else place
     cells = np.round(t.point / place).astype(np.int64)
     sides = np.round(t.normal / SAME_SIDE).astype(np.int64)

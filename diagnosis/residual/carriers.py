@@ -10,7 +10,7 @@ from matstd.twin.laws import Carrier, carrier_of
 from matstd.twin.machine import Family
 from matstd.twin.record import Touches
 
-ALIKE = 0.99999
+SAME_COSINE = 0.99999
 """Cosine of carriers that no touch of a run distinguishes."""
 
 
@@ -43,7 +43,7 @@ def bearers(
             continue
         for _, other, alike in firsts:
             same = other.shape == C.shape
-            if same and abs(float((other * C).sum())) > ALIKE * size * np.linalg.norm(other):
+            if same and abs(float((other * C).sum())) > SAME_COSINE * size * np.linalg.norm(other):
                 alike.append(carrier)
                 break
         else:

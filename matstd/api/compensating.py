@@ -55,7 +55,7 @@ from matstd.twin.frames import Array
 from matstd.twin.machine import Chain
 from matstd.twin.model import is_saved
 from matstd.twin.record import Touches
-from matstd.twin.units import TOOL_LENGTH, in_another_unit
+from matstd.twin.units import USUAL_TOOL_LENGTH, in_another_unit
 
 SOMETIMES = (
     "*/*",
@@ -350,7 +350,7 @@ def checked_length(tool_length: float) -> None:
     """
     if not 0.0 <= tool_length < LONGEST_TOOL:
         raise BadArgument("tool_length", f"{tool_length:g}", "a length from 0 to 10 000 mm")
-    slip = in_another_unit([tool_length], "mm", TOOL_LENGTH)
+    slip = in_another_unit([tool_length], "mm", USUAL_TOOL_LENGTH)
     if slip is not None:
         meant = f"mm; is it in {slip[0]}, {slip[1] * tool_length:g} mm?"
         raise BadArgument("tool_length", f"{tool_length:g}", meant)

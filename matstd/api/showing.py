@@ -47,7 +47,7 @@ from matstd.twin.machine import Chain, Family, Ranges
 from matstd.twin.model import Effect
 from matstd.twin.units import HOUR
 
-TOOL_LENGTH = 150.0
+DRAWN_TOOL_LENGTH = 150.0
 """Of the tool that is drawn unless another is stated, mm."""
 
 DURATION = 8.0 * HOUR  # after the start over which drifts are shown at least, s: a shift
@@ -102,7 +102,7 @@ def show(
     model: SavedModel | Fit | str | Path | None = None,
     program: str | Path | Sequence[str | Path] = (),
     standard: Standard | str | Path | None = None,
-    tool_length: float = TOOL_LENGTH,
+    tool_length: float = DRAWN_TOOL_LENGTH,
     datum: Mapping[str, float] | None = None,
     options: ProgramOptions | None = None,
     control: str = "itnc530",

@@ -187,7 +187,7 @@ def _read(tables: Mapping[str, Mapping[str, object]], machine: Path) -> Brief:
 def _is_reached(tables: Mapping[str, Mapping[str, object]], machine: Path) -> bool:
     """Whether a project passes seat and reach.
 
-    What is only told of it needs no more: a larger base has more room for the same faces.
+    Alternatives that are only mentioned need no design: a larger base has more room for the faces.
     """
     try:
         brief = _read(tables, machine)

@@ -12,7 +12,7 @@ from matstd.twin.files.toml import read_text
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain
 from matstd.twin.record import IntArray
-from matstd.twin.units import TOOL_LENGTH, in_another_unit
+from matstd.twin.units import USUAL_TOOL_LENGTH, in_another_unit
 
 FARTHEST = 1e5
 """A length (mm) or an angle (degrees) beyond this is a slip, not a reading or a place."""
@@ -78,7 +78,7 @@ def read_poses(path: str | Path, chain: Chain) -> tuple[Array, Array]:
     if "tool_length_mm" not in table:
         return q, np.zeros(len(table))
     lengths = table.numbers("tool_length_mm", largest=FARTHEST, smallest=0.0)
-    slip = in_another_unit([float(lengths.max())], "mm", TOOL_LENGTH)
+    slip = in_another_unit([float(lengths.max())], "mm", USUAL_TOOL_LENGTH)
     if slip is not None:
         row = int(lengths.argmax())
         raise table.bad(row, "tool_length_mm", f"{lengths[row]:g}", f"mm; is it in {slip[0]}?")

@@ -14,7 +14,7 @@ MIN_COPIES = 8  # fewer rows that agree with an earlier one to the last digit ma
 MIN_COPIED_SHARE = 0.6
 """Share of the repeated touches that must agree exactly: real ones rarely do, unless readings are
 much coarser than the noise."""
-SAME_PLACE = 0.05
+COPY_READING = 0.05
 """Touches whose readings lie within this (mm, or mrad) at one calibrated point are repeated."""
 
 
@@ -69,7 +69,7 @@ def _places(run: Run) -> NDArray[np.float64]:
     """Equal rows for touches at one point with nearly the same readings, (N, K)."""
     t = run.touches
     kinds = [t.chain.link(axis).kind for axis in t.chain.axes]
-    scale = SAME_PLACE * np.array([1.0 if kind == "linear" else 1e-3 for kind in kinds])
+    scale = COPY_READING * np.array([1.0 if kind == "linear" else 1e-3 for kind in kinds])
     return np.column_stack([np.round(t.q / scale), np.round(t.point / NM), t.setup])
 
 
