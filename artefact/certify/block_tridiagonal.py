@@ -2,7 +2,8 @@
 
 Coefficients of a tensor spline of degree k in rows of one direction couple over k rows, so blocks
 of k rows do. Elimination block by block costs as much as the blocks: a face of 55 x 55 control
-heights has eleven blocks of 275 instead of one matrix of 3025.
+heights has eleven blocks of 275 instead of one matrix of 3025. The banded Cholesky factor of scipy
+solves such systems; trace and uncertainty of the fit ask for entries of the inverse, too.
 
 Reference:
     Golub and Van Loan, Matrix Computations, 4.5 (block tridiagonal systems).

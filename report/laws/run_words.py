@@ -31,7 +31,7 @@ def run_sentence(one: LearntLaw) -> str:
     if not clocked:
         odds = odds_words(one.run_odds)
         what = f"A driver that was not recorded explains this run as well (odds {odds}); the law"
-    elif any(shape.relaxes for shape in clocked):
+    elif any(s.relaxes for s in clocked) and not any(s.is_placed for s in clocked):
         what = "It had not come to rest when the run ended, may be a drift, and"
     elif any(shape.word in _SWITCHES for shape in clocked):
         record = "what switches or was changed (coolant, a pump, a cooler, a stylus, a clamp)"

@@ -47,6 +47,7 @@ from matstd.diagnosis.laws.search import Ground, _curves
 from matstd.diagnosis.laws.space import Space
 from matstd.diagnosis.remarks import EffectOfOtherRun
 from matstd.report.laws import limits_sentences, no_law_sentence, second_run_sentence
+from matstd.report.laws.run_words import run_sentence
 from matstd.report.run_view import diagnosis_step
 from matstd.report.verdict import part_lines
 from matstd.report.words import remark_sentence, verdict_sentence
@@ -141,6 +142,21 @@ def test_a_law_over_a_temperature_that_belongs_to_its_run_may_take_any_course_in
     amount = np.stack(course.amounts(second.touches), axis=1)
     # by hand: either way by the height of the step, whatever the time
     assert np.mean((amount**2).sum(axis=1)) == pytest.approx((7.0 * UM) ** 2, rel=0.1)
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("law(EXX,exp time)", "had not come to rest"),
+        ("law(EXX,step time,two-exp time)", "was not recorded and switches"),
+        ("law(EXX,curve time)", "A driver that was not recorded belongs to this run"),
+        ("law(EXX,step T-spindle)", "explains this run as well (odds 20 : 1)"),
+    ],
+)
+def test_why_a_law_belongs_to_its_run_is_said(name, said, stylus) -> None:
+    law = parse_effect(name, stylus[1][0].touches.chain)
+    one = LearntLaw(law, (), score=np.log(20.0), curve=0.0, drift=0.0, rivals=())
+    assert said in run_sentence(one)
 
 
 def test_nothing_is_learnt_where_nothing_is_hidden() -> None:
