@@ -22,6 +22,8 @@ _NOUNS = {
 _SHOWN = {"mm": ("µm", UM), "rad": ("µrad", URAD), "s": ("ms", 1e-3)}
 """Base unit -> unit of the reports, and its size in the base unit."""
 
+_MAX_LOG10 = 12.0  # odds are not written with more zeros: beyond, their number means nothing
+
 _UNITS = (("_mm", "mm"), ("_deg", "deg"), ("_degC", "°C"), ("_N", "N"), ("_rpm", "1/min"))
 
 _SPELT = {
@@ -210,6 +212,22 @@ def percent(value: float) -> str:
 def p_value(value: float) -> str:
     """A probability; below 1e-12 its digits mean nothing."""
     return "< 1e-12" if value < 1e-12 else f"{value:.2g}"
+
+
+def odds_words(log_odds: float) -> str:
+    """Odds for the first against the second.
+
+    Example:
+        >>> odds_words(0.0), odds_words(math.log(25.0)), odds_words(40.0), odds_words(-1.0)
+        ('1 : 1', '25 : 1', '1e12 : 1', '1 : 2.7')
+    """
+    power = abs(log_odds) / math.log(10.0)
+    if power >= _MAX_LOG10:
+        times = f"1e{_MAX_LOG10:.0f}"
+    else:
+        times = digits(10.0**power, 2) if power < 4.0 else f"1e{power:.0f}"
+    times = times.removesuffix(".0")
+    return f"{times} : 1" if log_odds >= 0.0 else f"1 : {times}"
 
 
 def euros(value: float, u: float) -> str:

@@ -132,17 +132,10 @@ def write_stl(path: Path, mesh: Mesh) -> None:
 
 def read_stl(path: Path) -> tuple[Array, np.ndarray]:
     """Corners (V, 3) and triangles (F, 3) of an STL file, equal corners joined, order kept."""
-    record = np.dtype([("head", "<f4", 3), ("corners", "<f4", (3, 3)), ("tail", "<u2")])
-    data = path.read_bytes()
-    count = int.from_bytes(data[80:84], "little")
-    if len(data) == 84 + count * record.itemsize:
-        every = np.frombuffer(data, record, count, 84)["corners"].reshape(-1, 3)
-    else:  # as text
-        import trimesh
+    import trimesh
 
-        loaded = trimesh.load_mesh(str(path), file_type="stl", process=False)
-        every = np.asarray(loaded.vertices)[np.asarray(loaded.faces)].reshape(-1, 3)
-    corners, back = distinct_rows(every.astype(np.float64))
+    loaded = trimesh.load_mesh(str(path), file_type="stl", process=False)
+    corners, back = distinct_rows(loaded.triangles.reshape(-1, 3))
     return corners, back.reshape(-1, 3)
 
 

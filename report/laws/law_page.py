@@ -24,10 +24,10 @@ from matstd.report.laws.law_words import (
     rivals_sentence,
     variable_words,
 )
-from matstd.report.laws.run_words import odds_words, second_run_sentence
+from matstd.report.laws.run_words import second_run_sentence
 from matstd.report.laws.visit_words import visit_section
 from matstd.report.layout import KeyFigure, LiveView, Page, Picture, Section, Table, write_page
-from matstd.report.numbers import digits, microns, sentence
+from matstd.report.numbers import digits, microns, odds_words, sentence
 from matstd.twin.units import UM
 
 PAGE, PICTURES = "report.html", "pictures"

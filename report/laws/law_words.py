@@ -14,8 +14,8 @@ from matstd.diagnosis.laws import (
     amplitudes,
     places,
 )
-from matstd.report.laws.run_words import odds_words, run_sentence
-from matstd.report.numbers import microns, with_uncertainty
+from matstd.report.laws.run_words import run_sentence
+from matstd.report.numbers import microns, odds_words, with_uncertainty
 from matstd.twin.laws import Carrier, Driver, Factor, Law, drivers
 from matstd.twin.units import DEG, HOUR, MINUTE, UM, URAD
 from matstd.twin.words import listed

@@ -1,9 +1,7 @@
 """Whether a law is expected in another run, in words, and what a second run says of it."""
 
-import math
-
 from matstd.diagnosis.laws import LearntLaw, SecondRun
-from matstd.report.numbers import digits, microns
+from matstd.report.numbers import microns, odds_words
 from matstd.twin.laws import CLOCK
 
 _OF_ONE_RUN = (
@@ -15,14 +13,6 @@ _SWITCHES = ("step", "window", "square", "saw", "sine", "pulse", "plateau", "ram
 """Shapes over time of something that was switched or changed."""
 
 _LEVEL = "a temperature, a speed or a level that moves as it does"
-
-
-def odds_words(log_odds: float) -> str:
-    """`40 : 1`."""
-    if log_odds > math.log(1e6):
-        return "> 10⁶ : 1"
-    value = math.exp(max(log_odds, 0.0))
-    return f"{digits(value, 2) if value < 100 else f'{round(value, -1):.0f}'} : 1"
 
 
 def run_sentence(one: LearntLaw) -> str:

@@ -5,9 +5,8 @@ import numpy as np
 from matstd.diagnosis.next_visit import NoPlan, RivalPower, VisitPlan
 from matstd.probe_paths.locate import VisitSchedule
 from matstd.report.laws.law_words import carrier_words, short_words
-from matstd.report.laws.run_words import odds_words
 from matstd.report.layout import Section, Table
-from matstd.report.numbers import digits, span
+from matstd.report.numbers import digits, odds_words, span
 from matstd.twin.laws import law_of
 from matstd.twin.model import Effect
 from matstd.twin.words import listed

@@ -5,13 +5,13 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 
-from matstd.artefact.body import Standard
 from matstd.artefact.place import Placement
 from matstd.artefact.reach import standing_remarks
-from matstd.artefact.worth import Criterion, TouchCurve, touch_curve
+from matstd.artefact.worth import TouchCurve, touch_curve
+from matstd.cad_out.meshes import read_stl
 from matstd.diagnosis.task import guarded
-from matstd.report.design_view import DesignScene, ErrorField, design_live, error_field
-from matstd.report.layout import KeyFigure, Page, Picture, Section, Table, write_page
+from matstd.report.design_view import DesignScene, design_live, error_field
+from matstd.report.layout import KeyFigure, LiveView, Page, Picture, Section, Table, write_page
 from matstd.report.numbers import digits, percent, plural, um
 from matstd.report.pages.design_result import Design
 from matstd.report.pages.identifiability_section import identifiability_sections
@@ -83,7 +83,7 @@ def write_design_page(design: Design, folder: Path) -> list[str]:
     remarks = comparison_remarks(design.placement)
     with ThreadPoolExecutor(1) as beside:  # pictures are rendered in processes of their own
         drawn = beside.submit(_renderings, design, folder, remarks)
-        curves, field = _curves(design.placement), _field(design)
+        curves, live = _curves(design.placement), _live(design)
         standard, volumes = drawn.result()
     chain, body = design.brief.chain, design.placement.standard
     page = Page(
@@ -116,7 +116,7 @@ def write_design_page(design: Design, folder: Path) -> list[str]:
             f"Project `{design.brief.path.name}`, seed {design.brief.seed}. Deviations are "
             "tool side minus workpiece side; uncertainties are standard uncertainties (k = 1)."
         ],
-        live=design_live(_scene(design, field)),
+        live=live,
     )
     write_page(folder / "report.html", page)
     return remarks
@@ -125,39 +125,31 @@ def write_design_page(design: Design, folder: Path) -> list[str]:
 def _renderings(
     design: Design, folder: Path, remarks: list[str]
 ) -> tuple[list[Picture], list[Shown]]:
-    """The standard, and the maps in three dimensions."""
-    standard = _standard_picture(design, folder, remarks)
-    stands, stl = design.brief.setup.T_table_artefact, folder / "standard.stl"
-    return standard, draw_study_volumes(design.study, folder / MAPS, remarks, stl, stands)
-
-
-def _field(design: Design) -> ErrorField | None:
-    """Errors of the first simulated machine."""
-    first = design.machines[0]
-    believed = first.campaign.run.touches.setups[0]
-    return error_field(design.brief, believed, first.errors, first.fit)
-
-
-def _scene(design: Design, field: ErrorField | None) -> DesignScene:
-    """What moves on the page."""
-    return DesignScene(
-        brief=design.brief,
-        placement=design.placement,
-        plan=design.plan,
-        minutes=design.times.minutes,
-        field=field,
-    )
-
-
-def _standard_picture(design: Design, folder: Path, remarks: list[str]) -> list[Picture]:
-    """The standard; without OpenGL a remark and the rest of the page."""
+    """The standard, and the maps in three dimensions; without OpenGL remarks instead."""
+    mesh, file, standard = read_stl(folder / "standard.stl"), "standard.png", list[Picture]()
     try:
-        draw_standard(design.placement.standard, folder / "standard.stl", folder / "standard.png")
+        draw_standard(design.placement.standard, mesh, folder / file)
+        caption = "The standard from two sides: features with their names, datum plane."
+        standard.append(Picture(file, caption))
     except DesignError as error:
         remarks.append(f"No pictures of the standard: {error}")
-        return []
-    caption = "The standard from two sides: features with their names, datum plane."
-    return [Picture("standard.png", caption)]
+    stands = design.brief.setup.T_table_artefact
+    return standard, draw_study_volumes(design.study, folder / MAPS, remarks, mesh, stands)
+
+
+def _live(design: Design) -> LiveView:
+    """What moves on the page, with the errors of the first simulated machine."""
+    first = design.machines[0]
+    believed = first.campaign.run.touches.setups[0]
+    return design_live(
+        DesignScene(
+            brief=design.brief,
+            placement=design.placement,
+            plan=design.plan,
+            minutes=design.times.minutes,
+            field=error_field(design.brief, believed, first.errors, first.fit),
+        )
+    )
 
 
 def _key(design: Design) -> list[KeyFigure]:
@@ -223,9 +215,11 @@ def _poses(design: Design) -> int:
 
 
 def _curves(placement: Placement) -> list[TouchCurve]:
-    """Error against the number of touches on every artefact."""
+    """Error against the number of touches on every artefact; one has no body."""
+    at = placement.criterion
     return [
-        touch_curve(_on(placement.criterion, r.body), r.name, r.touches) for r in placement.rivals
+        touch_curve(at if r.body is None else at.on(r.body), r.name, r.touches)
+        for r in placement.rivals
     ]
 
 
@@ -252,11 +246,6 @@ def _comparison(design: Design, curves: list[TouchCurve]) -> list[Section]:
             pictures=[Picture("touch_curves.png", caption, drawn)],
         ),
     ]
-
-
-def _on(criterion: Criterion, body: Standard | None) -> Criterion:
-    """The criterion for touches on a body, or on none."""
-    return criterion if body is None else criterion.on(body)
 
 
 def _probing(design: Design) -> list[Section]:

@@ -7,7 +7,7 @@ from matstd.diagnosis.answer import Detectable, Diagnosis, Plan, Step, Verdict
 from matstd.diagnosis.fit import file_unit
 from matstd.report.effects import effect_title, plan_words
 from matstd.report.layout import Picture, Section, Table
-from matstd.report.numbers import digits, noun, p_value, percent, unit_words
+from matstd.report.numbers import digits, noun, odds_words, p_value, percent, unit_words
 from matstd.report.pages.run_sections import PICTURES
 from matstd.report.plots import draw_candidates, draw_rivals
 from matstd.report.style import series
@@ -128,7 +128,8 @@ def _rivals(step: Step, i: int) -> list[Section]:
     shown = [(r, "not distinguished") for r in alike]
     shown += [(r, "distinguished") for r in apart[:NEXT]]
     rows = [
-        [named(r.effect), odds(r.log_odds), f"{100 * r.overlap:.1f} %", state] for r, state in shown
+        [named(r.effect), odds_words(r.log_odds), f"{100 * r.overlap:.1f} %", state]
+        for r, state in shown
     ]
     return [
         Section(sentences=[words]),
@@ -148,23 +149,8 @@ def _single(step: Step) -> str:
     if not apart:
         return f"{named(step.effect)} has no rival."
     first = apart[0]
-    words = f"{odds(first.log_odds)} ({named(first.effect)})"
+    words = f"{odds_words(first.log_odds)} ({named(first.effect)})"
     return f"{named(step.effect)} has no rival: the odds against the next effect are {words}."
-
-
-def odds(log_odds: float) -> str:
-    """Odds from their natural logarithm.
-
-    Example:
-        >>> odds(0.02), odds(2.3), odds(30.0)
-        ('1 : 1', '10 : 1', '10^13 : 1')
-    """
-    ratio = math.exp(min(max(log_odds, 0.0), 700.0))
-    if ratio < 1.05:
-        return "1 : 1"
-    if ratio < 1e4:
-        return f"{digits(ratio, 2)} : 1"
-    return f"10^{math.floor(math.log10(ratio))} : 1"
 
 
 def detection_sections(found: Sequence[Detectable]) -> list[Section]:

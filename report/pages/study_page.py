@@ -123,14 +123,14 @@ def draw_study_volumes(
     study: Study,
     folder: Path,
     remarks: list[str],
-    stl: Path | None = None,
+    mesh: tuple[Array, np.ndarray] | None = None,
     T_table_artefact: Array | None = None,
 ) -> list[Shown]:
     """Draw volumetric error and S in three dimensions.
 
     Args:
         remarks: Receives a line if they cannot be drawn, as without OpenGL.
-        stl: STL file of the standard; None for none.
+        mesh: Corners and triangles of the standard; None for none.
         T_table_artefact: Pose of the standard, (4, 4).
     """
     if not has_volume(study.workspace):
@@ -141,7 +141,7 @@ def draw_study_volumes(
         folder / S_3D: sensitivity_scenes(study, T_table_artefact),
     }
     try:
-        draw_volumes({path: each for path, each in scenes.items() if each}, stl)
+        draw_volumes({path: each for path, each in scenes.items() if each}, mesh)
     except DesignError as error:
         remarks.append(f"No maps in three dimensions: {error}")
         return []

@@ -1,7 +1,6 @@
 """Pictures in three dimensions, drawn without a screen in a process of their own.
 
-Files pass between the two processes, because a renderer without OpenGL ends the process it runs
-in; `*_scene` speaks to the rest of the house, `*_render` runs over there.
+A renderer without OpenGL ends the process it runs in, so `renderer` starts another one.
 """
 
 from matstd.report.scenes.standard_scene import draw_standard

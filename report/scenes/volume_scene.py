@@ -1,7 +1,7 @@
 """Maps in three dimensions: values over three linear readings, drawn without a screen.
 
-The scene itself is rendered in a process of its own, as pictures of a standard are; ticks, names
-and colour bars are put on it here, where the view is one linear map.
+The values are rendered in a process of their own, as pictures of a standard are; ticks, names and
+colour bars are put on them by matplotlib, where the view is one linear map.
 """
 
 from collections.abc import Mapping, Sequence
@@ -11,14 +11,11 @@ from typing import Any
 
 import numpy as np
 
-from matstd.cad_out.meshes import read_stl
-from matstd.report.scenes.renderer import render, shared_folder
-from matstd.report.style import INK, RED, WIDTH, Figure, figure, save
+from matstd.report.scenes.renderer import aim, picture_axes, rendered, surface
+from matstd.report.style import INK, LINE, RED, WIDTH, Figure, figure, save
 from matstd.twin.errors import DesignError, ShapeMismatch
 from matstd.twin.frames import Array, apply
 from matstd.twin.sampling import grid_points
-
-IMAGE = "image.npy"  # what the renderer leaves
 
 PIXELS = 900  # height and width of one rendered scene
 
@@ -27,6 +24,7 @@ COLOURS = "viridis"  # even in lightness, and readable without red and green
 _VIEW = (0.62, -0.74, 0.46)  # towards the eye: right of and in front of the machine, from above
 _WIDEST = 5.0  # inch, of one scene
 _FREE = 1.03  # of the half height: nothing touches the edge of the picture
+_LEVELS = 5  # iso-surfaces between smallest and largest value
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,8 +41,7 @@ class Scene:
     T_readings_artefact: Array | None = None
     # lines of rotary axes by name: a point and a unit direction each, (2, 3)
     lines: Mapping[str, Array] = field(default_factory=dict)
-    # lowest and highest corner of the standard in its own frame, (2, 3); `draw_volumes` takes them
-    # from the STL file
+    # lowest and highest corner of the standard in its own frame, (2, 3), as `draw_volumes` finds it
     body: Array | None = None
 
     def __post_init__(self) -> None:
@@ -66,7 +63,9 @@ def eye() -> Array:
     return view / np.linalg.norm(view)
 
 
-def draw_volumes(pictures: Mapping[Path, Sequence[Scene]], stl: str | Path | None = None) -> None:
+def draw_volumes(
+    pictures: Mapping[Path, Sequence[Scene]], mesh: tuple[Array, np.ndarray] | None = None
+) -> None:
     """PNGs of scenes side by side: sections on the far sides, iso-surfaces, standard, axes.
 
     Every scene has its own colour bar. All scenes are rendered together, because starting the
@@ -74,17 +73,18 @@ def draw_volumes(pictures: Mapping[Path, Sequence[Scene]], stl: str | Path | Non
 
     Args:
         pictures: The scenes of every file to be written; each whole or not at all.
-        stl: STL file of the standard; None to draw none.
+        mesh: Corners and triangles of the standard; None to draw none.
 
     Raises:
         MissingLibrary: No OpenGL without a screen on this machine; names the system package.
         DesignError: The renderer fails otherwise.
     """
     scenes = [scene for each in pictures.values() for scene in each]
-    if stl is not None:
-        extent = _extent(Path(stl))
+    if mesh is not None:
+        extent = np.array([mesh[0].min(axis=0), mesh[0].max(axis=0)])
         scenes = [replace(scene, body=extent) for scene in scenes]
-    images = _rendered(scenes, None if stl is None else Path(stl))
+    image = rendered(_rendering, scenes, mesh, missing="map in three dimensions")
+    images = np.split(image, len(scenes), axis=1)
     start = 0
     for path, own in pictures.items():
         end = start + len(own)
@@ -92,14 +92,53 @@ def draw_volumes(pictures: Mapping[Path, Sequence[Scene]], stl: str | Path | Non
         start = end
 
 
-def _extent(stl: Path) -> Array:
-    """Lowest and highest corner of a body, (2, 3)."""
-    try:
-        stl.stat()
-        corners = read_stl(stl)[0]
-    except OSError as error:
-        raise DesignError(f"{stl}: cannot be read ({error.strerror})") from error
-    return np.array([corners.min(axis=0), corners.max(axis=0)])
+def _rendering(scenes: Sequence[Scene], mesh: tuple[Array, np.ndarray] | None) -> Any:
+    """Scenes side by side without any text, each of PIXELS by PIXELS."""
+    import pyvista as pv
+
+    if mesh is not None:
+        body = surface(*mesh).compute_normals(split_vertices=True, feature_angle=25.0)
+    size = (PIXELS * len(scenes), PIXELS)
+    plotter = pv.Plotter(off_screen=True, shape=(1, len(scenes)), window_size=size, border=False)
+    for k, scene in enumerate(scenes):
+        plotter.subplot(0, k)
+        _add_values(plotter, scene)
+        if mesh is not None and scene.T_readings_artefact is not None:
+            placed = body.transform(scene.T_readings_artefact, inplace=False)
+            plotter.add_mesh(placed, color=LINE, smooth_shading=True, ambient=0.25)
+        camera = _camera(scene)
+        aim(plotter, eye(), camera[:3], float(camera[3]))
+        plotter.reset_camera_clipping_range()
+    return plotter
+
+
+def _add_values(plotter: Any, scene: Scene) -> None:
+    """Sections on the three far sides of the box, and iso-surfaces through it."""
+    import pyvista as pv
+
+    grid, values = pv.RectilinearGrid(*scene.readings), scene.values
+    grid["value"] = values.ravel(order="F")
+    low, high = np.nanmin(values), np.nanmax(values)
+    shown = {
+        "scalars": "value",
+        "cmap": COLOURS,
+        "clim": (low, high),
+        "show_scalar_bar": False,
+        "lighting": False,
+        "nan_opacity": 0.0,
+    }
+    for i, ends in enumerate(scene.box.T):
+        origin = np.array([r.mean() for r in scene.readings])
+        # a hair inside, or the cut may miss the grid by rounding
+        far, near = ends if eye()[i] > 0.0 else ends[::-1]
+        origin[i] = far + 1e-6 * (near - far)
+        plotter.add_mesh(grid.slice(normal=np.eye(3)[i], origin=origin), **shown)
+    if high - low > 1e-9 * max(abs(high), 1e-300):
+        levels = np.linspace(low, high, _LEVELS + 2)[1:-1]
+        surfaces = grid.contour(levels, scalars="value")
+        if surfaces.n_points:
+            plotter.add_mesh(surfaces, opacity=0.3, **shown)
+    plotter.add_mesh(grid.outline(), color=INK, line_width=2)
 
 
 def _camera(scene: Scene) -> Array:
@@ -109,29 +148,8 @@ def _camera(scene: Scene) -> Array:
     if scene.body is not None and scene.T_readings_artefact is not None:
         corners = grid_points(*scene.body.T)
         off = apply(scene.T_readings_artefact, corners) - middle
-        half = max(half, float(np.abs(off @ _across().T).max()))
+        half = max(half, float(np.abs(off @ picture_axes(eye()).T).max()))
     return np.append(middle, _FREE * half)
-
-
-def _across() -> Array:
-    """Directions to the right and upwards in a picture, (2, 3)."""
-    right = np.cross([0.0, 0.0, 1.0], eye())
-    right /= np.linalg.norm(right)
-    return np.stack([right, np.cross(eye(), right)])
-
-
-def _rendered(scenes: Sequence[Scene], stl: Path | None) -> list[Array]:
-    """Images of the scenes without text, each (PIXELS, PIXELS, 3)."""
-    facts: dict[str, Any] = {"count": len(scenes)}
-    for k, scene in enumerate(scenes):
-        T = scene.T_readings_artefact
-        facts |= {f"{name}_{k}": r for name, r in zip("xyz", scene.readings, strict=True)}
-        facts |= {f"values_{k}": scene.values, f"camera_{k}": _camera(scene)}
-        facts[f"T_{k}"] = np.full((4, 4), np.nan) if T is None else T
-    with shared_folder(stl, facts) as place:
-        render("volume_render", "render", place, "map in three dimensions")
-        image = np.load(place / IMAGE)
-    return [image[:, k * PIXELS : (k + 1) * PIXELS] for k in range(len(scenes))]
 
 
 def composed(scenes: Sequence[Scene], images: Sequence[Array]) -> Figure:
@@ -154,7 +172,7 @@ def composed(scenes: Sequence[Scene], images: Sequence[Array]) -> Figure:
 def _on_picture(scene: Scene, points: Array) -> Array:
     """Where points (N, 3) lie in a picture from -1 to 1 each way, (N, 2)."""
     camera = _camera(scene)
-    return (points - camera[:3]) / camera[3] @ _across().T
+    return (points - camera[:3]) / camera[3] @ picture_axes(eye()).T
 
 
 def _ticks(axes: Any, scene: Scene) -> None:

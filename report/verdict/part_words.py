@@ -1,6 +1,5 @@
 """Lines on the three parts of a verdict, on repeatability and on the errors to expect."""
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -21,14 +20,12 @@ from matstd.diagnosis.residual import Shape
 from matstd.report.effects import effect_words
 from matstd.report.geometry import estimate_words, fault_sentences, quantity_name
 from matstd.report.laws import learnt_words
-from matstd.report.numbers import digits, microns, noun, p_value, percent
+from matstd.report.numbers import digits, microns, noun, odds_words, p_value, percent
 from matstd.report.words import sizes, structure_words
 from matstd.twin.library import title_of
 from matstd.twin.words import listed
 
 NAMED = 3  # quantities of the geometry that are written out; of more, the first ones
-
-MAX_LOG10 = 12.0  # odds are not written with more zeros: beyond, their number means nothing
 
 BROKEN = 1.1
 """Ratio of error to promise from which a prediction is worse than promised; the figures themselves
@@ -106,22 +103,6 @@ def _rival(one: NamedEffect) -> str:
 def _odds(log_odds: float) -> str:
     alike = " (not distinguished)" if log_odds < POLICY.log_odds_alike else ""
     return f"odds {odds_words(log_odds)}{alike}"
-
-
-def odds_words(log_odds: float) -> str:
-    """Odds for the first against the second.
-
-    Example:
-        >>> odds_words(0.0), odds_words(math.log(25.0)), odds_words(40.0), odds_words(-1.0)
-        ('1 : 1', '25 : 1', '1e12 : 1', '1 : 2.7')
-    """
-    power = abs(log_odds) / math.log(10.0)
-    if power >= MAX_LOG10:
-        times = f"1e{MAX_LOG10:.0f}"
-    else:
-        times = digits(10.0**power, 2) if power < 4.0 else f"1e{power:.0f}"
-    times = times.removesuffix(".0")
-    return f"{times} : 1" if log_odds >= 0.0 else f"1 : {times}"
 
 
 def _nothing_named(result: Diagnosis) -> str:

@@ -13,8 +13,8 @@ from matstd.diagnosis.answer.steps import Step
 from matstd.diagnosis.fit import Reported, Role, fit_run
 from matstd.diagnosis.geometry import LearntGeometry
 from matstd.diagnosis.residual import Shape, Structure
+from matstd.report.numbers import odds_words
 from matstd.report.verdict import part_lines
-from matstd.report.verdict.part_words import odds_words
 from matstd.report.words import verdict_sentence
 from matstd.twin.frames import apply
 from matstd.twin.library import ordinary_model, parse_effect
