@@ -21,10 +21,10 @@ from matstd.effect_kinds import register_effects
 from matstd.probe_paths.campaign import read_program_of
 from matstd.probe_paths.control import ReadProgram, read_program
 from matstd.probe_paths.language import read_dialect
+from matstd.probe_paths.plan import ToolClearance
 from matstd.report.machine import (
     Drawn,
     Played,
-    SetUp,
     ShownMachine,
     body_meshes,
     error_functions,
@@ -256,11 +256,11 @@ def _played(
         return played_probing(errors.chain, read, texts), [probe_body(read[0].heading.probe)]
     piece = standard_of(standard)
     read = [read_program_of(piece, file, errors.chain, None, dialect) for file in files]
-    played, stands = played_probing(errors.chain, read, texts), _stands(read, piece)
-    return with_clearance(errors.chain, played, stands), set_up_bodies(errors.chain, stands)
+    played, stands = played_probing(errors.chain, read, texts), _stands(errors.chain, read, piece)
+    return with_clearance(played, stands), set_up_bodies(stands)
 
 
-def _stands(programs: Sequence[ReadProgram], standard: Standard) -> SetUp:
+def _stands(chain: Chain, programs: Sequence[ReadProgram], standard: Standard) -> ToolClearance:
     """What the heads of programs state, which must be the same in all; raises BadFile."""
     first = programs[0].heading
     for program in programs:
@@ -269,7 +269,8 @@ def _stands(programs: Sequence[ReadProgram], standard: Standard) -> SetUp:
             found = f"set-up {head.setup.name}, probe of {head.probe.length:g} mm"
             expected = f"{first.setup.name} and {first.probe.length:g} mm, as in the first program"
             raise BadFile(program.path, "head", found, expected)
-    return SetUp(
+    return ToolClearance(
+        chain=chain,
         standard=first.touched(standard),
         setup=first.setup,
         probe=first.probe,

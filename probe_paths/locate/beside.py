@@ -130,14 +130,11 @@ def companions(
     dialect: Dialect,
     feeds: Feeds,
     raised: float = RAISED,
-    spread: Spread | None = None,
     is_further: bool = False,
 ) -> Companions:
-    """Dry run, search, ball and commissioning program of a plan.
+    """Dry run, search within the widest of `SPREADS` that allows one, ball, commissioning program.
 
     Args:
-        spread: Within which the search finds the standard; None for the widest of `SPREADS` for
-            which there is a search.
         is_further: Whether another probe has already searched and tried the control.
     """
     dry_run = make_dry_run(plan, raised, dialect, feeds)
@@ -154,7 +151,7 @@ def companions(
     if is_further:
         return replace(made, no_search="the first probe of this set-up has found it")
     # the widest spread comes first, a narrower one where it allows no search
-    for chosen in SPREADS if spread is None else (spread,):
+    for chosen in SPREADS:
         place = plan.standard, plan.chain, plan.probe, plan.setup
         try:
             search = plan_search(*place, chosen, plan.options.workshop, plan.options.retract)

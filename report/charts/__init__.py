@@ -4,6 +4,6 @@ In: a `History`. Out: what changed and when, in words; charts with their limits;
 """
 
 from matstd.report.charts.chart_page import write_history_page
-from matstd.report.charts.chart_words import chart_name, history_lines, history_sentence
+from matstd.report.charts.chart_words import history_lines, history_sentence
 
-__all__ = ["chart_name", "history_lines", "history_sentence", "write_history_page"]
+__all__ = ["history_lines", "history_sentence", "write_history_page"]

@@ -58,8 +58,7 @@ def draw_shares_along(time: Array, whole: Array, shares: Sequence[Share]) -> Fig
     errors = [s.u / UM for s in shown]
     right.errorbar(sizes, y, xerr=errors, fmt="none", ecolor=SOFT, capsize=2)
     right.set_yticks(y, [_short(s.name) for s in shown])
-    right.set_xlim(0.0, None)
-    right.set_xlabel("µm, rms along the path, each by itself")
+    right.set(xlim=(0.0, None), xlabel="µm, rms along the path, each by itself")
     plain(left)
     plain(right, "x")
     return drawn
@@ -107,9 +106,7 @@ def draw_program(done: Compensated) -> Figure:
     if done.u.any():
         at = done.elapsed[done.u_at] / MINUTE
         right.plot(at, done.u / UM, ":", color=INK, lw=1.2, label="uncertainty of the model (u)")
-    right.set_yscale("log")
-    right.set_xlabel("time in min")
-    right.set_ylabel("error of the tool point in µm")
+    right.set(yscale="log", xlabel="time in min", ylabel="error of the tool point in µm")
     right.legend(fontsize=8, frameon=False)
     for ax in (left, right):
         plain(ax)
@@ -139,8 +136,7 @@ def _path(ax: Any, done: Compensated, rows: np.ndarray) -> None:
         ax.plot(shown[:, i], shown[:, j], style, color=colour, lw=1.2, label=label)
         ax.plot(shown[is_hole, i], shown[is_hole, j], ".", color=colour, ms=4)
     ax.set_aspect("equal", adjustable="datalim")
-    ax.set_xlabel(f"{'xyz'[i]} in mm")
-    ax.set_ylabel(f"{'xyz'[j]} in mm")
+    ax.set(xlabel=f"{'xyz'[i]} in mm", ylabel=f"{'xyz'[j]} in mm")
     ax.set_title(f"deviations {gain:.0f} times", fontsize=9)
     ax.legend(fontsize=8, frameon=False)
 
@@ -191,8 +187,7 @@ def draw_shares(left: Sequence[UncorrectedError]) -> Figure:
         [item.rms / UM for item in shown], y, xerr=errors, fmt="none", ecolor=SOFT, capsize=2
     )
     ax.set_yticks(y, [item.name for item in shown])
-    ax.set_xlim(0.0, None)
-    ax.set_xlabel("µm, rms over the workspace")
+    ax.set(xlim=(0.0, None), xlabel="µm, rms over the workspace")
     ax.legend(fontsize=8, frameon=False)
     plain(ax, "x")
     return drawn

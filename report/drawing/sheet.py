@@ -106,8 +106,7 @@ class Sheet:
         wide, high = paper.width, paper.height
         self.figure = figure(high / 25.4, wide / 25.4, layout=None)
         self.axes = self.figure.add_axes((0.0, 0.0, 1.0, 1.0))
-        self.axes.set_xlim(0.0, wide)
-        self.axes.set_ylim(0.0, high)
+        self.axes.set(xlim=(0.0, wide), ylim=(0.0, high))
         self.axes.set_axis_off()
         self._depth = 1.0
         self.ink: list[Array] = []

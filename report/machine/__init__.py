@@ -5,14 +5,13 @@ solids by rule from the chain, or the user's meshes; errors go into the page as 
 readings, and the page multiplies the exact kinematics itself (`live/parts/kinematics.js`).
 """
 
-from matstd.report.machine.error_series import ErrorFunction, error_functions
+from matstd.report.machine.error_series import error_functions
 from matstd.report.machine.machine_page import machine_data, machine_html
 from matstd.report.machine.machine_words import ShownMachine, shown_lines
 from matstd.report.machine.meshes import body_meshes, drawing_triangles, thinned
 from matstd.report.machine.played import Played, played_part, played_probing
 from matstd.report.machine.probing_page import PLAYBACK, write_playback
 from matstd.report.machine.set_up import (
-    SetUp,
     probe_body,
     set_up_bodies,
     standard_bodies,
@@ -23,9 +22,7 @@ from matstd.report.machine.solids import Drawn
 __all__ = [
     "PLAYBACK",
     "Drawn",
-    "ErrorFunction",
     "Played",
-    "SetUp",
     "ShownMachine",
     "body_meshes",
     "drawing_triangles",

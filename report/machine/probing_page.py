@@ -9,12 +9,12 @@ from matstd.compensation.field import MachineErrors
 from matstd.probe_paths.control import interpret
 from matstd.probe_paths.emit import ProgramSet
 from matstd.probe_paths.language import Dialect
-from matstd.probe_paths.plan import TouchPlan
+from matstd.probe_paths.plan import ToolClearance, TouchPlan
 from matstd.report.machine.error_series import ErrorFunction, error_functions
 from matstd.report.machine.machine_page import machine_html
 from matstd.report.machine.machine_words import ShownMachine
 from matstd.report.machine.played import played_probing
-from matstd.report.machine.set_up import SetUp, set_up_bodies, with_clearance
+from matstd.report.machine.set_up import set_up_bodies, with_clearance
 from matstd.twin.files import write_whole
 
 PLAYBACK = "playback.html"
@@ -44,7 +44,8 @@ def write_playback(
         )
         for p in programs.programs
     ]
-    stands = SetUp(plan.standard, plan.setup, plan.probe, plan.options.workshop)
+    room = (plan.standard, plan.setup, plan.probe, plan.options.workshop)
+    stands = ToolClearance(chain, *room)
     played = played_probing(chain, read, [p.text for p in programs.programs], plan.options.standoff)
     duration = float(played.time[-1])
     found: Sequence[ErrorFunction] = ()
@@ -56,9 +57,9 @@ def write_playback(
         duration=duration,
         errors=found,
         source=TRIED if errors is not None else "",
-        bodies=set_up_bodies(chain, stands),
+        bodies=set_up_bodies(stands),
         replaced=("t",),
-        program=with_clearance(chain, played, stands),
+        program=with_clearance(played, stands),
         datum=(np.zeros(len(chain.axes)), plan.probe.length),
     )
     write_whole(page, machine_html(shown))

@@ -1,38 +1,26 @@
 """Standard, clamps and probe of probing programs as bodies of the machine, and their clearance."""
 
 from dataclasses import replace
-from typing import NamedTuple
 
 import numpy as np
 
 from matstd.artefact.body import FreeformPatch, Standard
-from matstd.artefact.reach import Solid, Workshop, table_face
+from matstd.artefact.reach import Solid, table_face
 from matstd.probe_paths.plan import Probe, ToolClearance
 from matstd.report.machine.played import Played
 from matstd.report.machine.solids import Drawn, ball, box, cylinder
 from matstd.report.style import series
 from matstd.twin.frames import Array, apply, inverse, pose
-from matstd.twin.machine import Chain
-from matstd.twin.record import Setup
 
 _BODY, _BALL, _TABLE, _CLAMP, _PROBE = "#b9bec4", "#f0e442", "#dde2e8", "#d55e00", "#5c6878"
 _CELLS = 14  # cells a side of a face
 _NOSE = 150.0  # mm of the spindle's nose that are drawn
 
 
-class SetUp(NamedTuple):
-    """What stands on the machine while it probes."""
-
-    standard: Standard  # that is probed
-    setup: Setup  # where it stands
-    probe: Probe  # in the spindle
-    workshop: Workshop  # what stands beside it
-
-
-def set_up_bodies(chain: Chain, stands: SetUp) -> list[Drawn]:
+def set_up_bodies(stands: ToolClearance) -> list[Drawn]:
     """Everything that is set up, in the frame of the machine with every axis at zero."""
     T = stands.setup.T_table_artefact
-    T_table_face, origin = table_face(T), chain.table_origin
+    T_table_face, origin = table_face(T), stands.chain.table_origin
     out = [
         Drawn(
             s.on or "w",
@@ -57,21 +45,14 @@ def probe_body(probe: Probe) -> Drawn:
     return Drawn("t", _PROBE, np.concatenate(parts) - np.array([0.0, 0.0, probe.length]))
 
 
-def with_clearance(chain: Chain, played: Played, stands: SetUp) -> Played:
+def with_clearance(played: Played, stands: ToolClearance) -> Played:
     """A program with the gap between the tool above its ball and the nearest body at each position.
 
     Where the probe changes, or the standard is clamped anew, a program has another set-up.
     """
-    gaps = ToolClearance(
-        chain=chain,
-        standard=stands.standard,
-        setup=stands.setup,
-        probe=stands.probe,
-        workshop=stands.workshop,
-    )
     # before and after a touch, and at anchors, the probe stands in the same places
     places, which = np.unique(played.q, axis=0, return_inverse=True)
-    clearance, nearest = gaps.gap(places)
+    clearance, nearest = stands.gap(places)
     which = which.reshape(-1)
     return replace(played, clearance=clearance[which], nearest=nearest[which])
 

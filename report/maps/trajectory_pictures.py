@@ -86,8 +86,7 @@ def _sheet(path: Trajectory) -> tuple[Figure, Axes, Axes]:
             label, unit = reading_label(path.chain, name)
             reading = path.q[:, path.chain.axis_index(name)] / unit
             below.plot(path.along, reading, color=series(k), lw=1.2, label=label)
-        below.set_xlabel("share of the way")
-        below.set_ylabel("reading")
+        below.set(xlabel="share of the way", ylabel="reading")
         below.legend(frameon=False, fontsize=7, ncols=3, loc="lower center",
                      bbox_to_anchor=(0.5, 0.98))  # fmt: skip
         _plain(below)

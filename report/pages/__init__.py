@@ -5,14 +5,8 @@ A page is a list of `Section`s (sentences, table, pictures) under a verdict and 
 """
 
 from matstd.report.layout import (
-    KeyFigure,
-    Page,
-    Picture,
     Printer,
-    Section,
-    Table,
     printer,
-    write_page,
     write_pdf,
 )
 from matstd.report.pages.compare_page import write_compare_page
@@ -27,20 +21,14 @@ from matstd.report.pages.uncertainty_page import write_uncertainty_page
 
 __all__ = [
     "Design",
-    "KeyFigure",
-    "Page",
-    "Picture",
     "Printer",
     "Proven",
-    "Section",
-    "Table",
     "drawing",
     "machine_times",
     "printer",
     "write_compare_page",
     "write_design_page",
     "write_diagnosis_page",
-    "write_page",
     "write_pdf",
     "write_setup_page",
     "write_study_page",

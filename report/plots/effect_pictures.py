@@ -73,8 +73,7 @@ def draw_fall(diagnosis: Diagnosis) -> Figure:
         _value(ax, i, held[i], up, ORANGE)
         _value(ax, i, fitted[i], not up, BLUE)
     if high > RATIO * low:
-        ax.set_yscale("log")
-        ax.set_ylim(0.55 * low, 1.8 * high)
+        ax.set(yscale="log", ylim=(0.55 * low, 1.8 * high))
     else:
         ax.set_ylim(0.0, 1.18 * high)
     ax.set_xlim(-0.5, max(len(fits) - 0.5, 1.5))

@@ -34,8 +34,7 @@ def draw_setup(plan: TouchPlan) -> Figure:
     top, side = drawn_on["top"], drawn_on["side"]
     if is_wide:
         _whole_table(drawn_on["whole"], edge, base)
-        top.set_xlim(low[0], high[0])
-        top.set_ylim(low[1], high[1])
+        top.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]))
     for solid in plan.options.workshop.solids:
         outline = apply(solid.T_face_solid, _outline(solid.plate))
         is_table = solid is table
@@ -60,9 +59,7 @@ def draw_setup(plan: TouchPlan) -> Figure:
         # centred on the line of the arrow, which else leans by half of the letter
         top.annotate(name, ends[0, :2], ends[1, :2], color=INK, ha="center", va="center",
                      arrowprops={"arrowstyle": "<-", "color": INK})  # fmt: skip
-    top.set_aspect("equal")
-    top.set_xlabel("x of the table in mm")
-    top.set_ylabel("y of the table in mm")
+    top.set(aspect="equal", xlabel="x of the table in mm", ylabel="y of the table in mm")
     top.set_title("from above, rotary axes at zero", loc="left")
     plain(top)
     _probe(side, plan)
@@ -106,9 +103,7 @@ def _probe(ax: Any, plan: TouchPlan) -> None:
                 lw=1.0)  # fmt: skip
         low = high
     ax.axhline(probe.length, color=SOFT, lw=0.8, ls="--")
-    ax.set_aspect("equal")
-    ax.set_xlabel("mm")
-    ax.set_ylabel("above the ball centre in mm")
+    ax.set(aspect="equal", xlabel="mm", ylabel="above the ball centre in mm")
     ax.set_title("probe; dashed: gauge line", loc="left")
     plain(ax)
 
@@ -138,9 +133,7 @@ def draw_touches(plan: TouchPlan) -> Figure:
                 headwidth=3.5,
                 label=f"{label}: {rows.sum()} touches",
             )
-        ax.set_aspect("equal")
-        ax.set_xlabel("x in mm")
-        ax.set_ylabel(f"{'xyz'[j]} in mm")
+        ax.set(aspect="equal", xlabel="x in mm", ylabel=f"{'xyz'[j]} in mm")
         plain(ax)
     top.set_title("from above", loc="left")
     side.set_title("from the side", loc="left")

@@ -123,8 +123,7 @@ def _histogram(ax: Any, z: Array, factor: float) -> None:
     for sd, style, word in ((1.0, "-", "stated noise"), (factor, "--", "estimated noise")):
         density = np.exp(-0.5 * (x / sd) ** 2) / (sd * np.sqrt(2.0 * np.pi))
         ax.plot(x, density, style, color=INK, lw=1.2, label=word)
-    ax.set_xlabel("residual over its stated standard uncertainty")
-    ax.set_ylabel("density")
+    ax.set(xlabel="residual over its stated standard uncertainty", ylabel="density")
     ax.legend(fontsize=8, frameon=False)
 
 

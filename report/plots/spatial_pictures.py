@@ -223,8 +223,7 @@ def _arrows(drawn: Any, ax: Any, fit: Fit, rows: IntArray, vectors: Array, sure:
         ax.plot(x[~sure], y[~sure], "o", ms=4.5, mfc="none", color=SOFT)
         title += "; circle: too few touches"
     ax.set_title(title, fontsize=9, loc="left", color=INK)
-    ax.set_xlabel(x_name)
-    ax.set_ylabel(y_name)
+    ax.set(xlabel=x_name, ylabel=y_name)
     ax.margins(0.22)
     plain(ax)
     bar = drawn.colorbar(marks, ax=ax, shrink=0.85)

@@ -13,7 +13,7 @@ from matstd.probe_paths.language.dialect import Dialect
 from matstd.probe_paths.plan import ToolClearance
 from matstd.report.machine.played import last_moves, played_probing
 from matstd.report.machine.probing_page import PLAYBACK, write_playback
-from matstd.report.machine.set_up import SetUp, set_up_bodies
+from matstd.report.machine.set_up import set_up_bodies
 from matstd.twin.frames import apply, inverse
 from matstd.twin.library import parse_sized_effect
 from matstd.twin.machine import tip
@@ -102,8 +102,8 @@ def test_sides_hold_until_an_axis_turns_back():
 
 
 def test_bodies_are_those_of_the_plan(plan):
-    stands = SetUp(plan.standard, plan.setup, plan.probe, plan.options.workshop)
-    drawn = set_up_bodies(plan.chain, stands)
+    room = (plan.standard, plan.setup, plan.probe, plan.options.workshop)
+    drawn = set_up_bodies(ToolClearance(plan.chain, *room))
     tool = next(body for body in drawn if body.on == "t").corners.reshape(-1, 3)
     assert tool[:, 2].min() == pytest.approx(-plan.probe.length - plan.probe.radius)
     assert np.hypot(*tool[:, :2].T).max() == pytest.approx(plan.probe.nose_radius)

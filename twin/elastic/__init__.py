@@ -4,9 +4,9 @@ One kind a file, as in `effects`; `section` and `beam` are the mechanics. Weight
 a material, so a `beam` is stated by the user and never proposed.
 """
 
-from matstd.twin.elastic.body import Body, short_beams
+from matstd.twin.elastic.body import short_beams
 from matstd.twin.elastic.materials import Material, material, material_names
 
 __all__ = [
-    "Body", "Material", "material", "material_names", "short_beams",
+    "Material", "material", "material_names", "short_beams",
 ]  # fmt: skip
