@@ -126,8 +126,7 @@ def write_history_page(found: History, folder: str | Path, title: str, follows: 
         follows: The next command; "" for none.
     """
     page = Page(
-        title=f"Trend of {title}",
-        heading=f"Control charts of {found.occasions[0].chain.name}",
+        heading=f"Control charts of {found.occasions[0].chain.name}, {title}",
         lead=history_sentence(found),
         means=meaning(found),
         next=_todo(found, follows),

@@ -66,7 +66,6 @@ def write_compensation_page(
     results = {control_title(p.format): p.result for p in done}
     overview = "Error of the tool point over the workspace, before and after."
     page = Page(
-        title=f"Compensation with {title}",
         heading=f"Compensation with {title}",
         lead=f"{head.machine}; datum {head.datum}; state {head.state}; model {head.model}.",
         means=_MEANS,

@@ -124,7 +124,6 @@ def write_drift_page(
     measured = "Measured drift, and the free run of the chosen law with ± 2 u."
     step_ahead = "A small error one step ahead is no evidence for a law."
     page = Page(
-        title=f"Thermal drift of {title}",
         heading=f"Thermal drift of {title}",
         lead=f"{law_title(best.name)}: {law_words(best, record)}.",
         means=_MEANS.format(left=free_run, constant=digits(constant), unit=unit),

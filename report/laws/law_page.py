@@ -73,7 +73,6 @@ def write_law_page(
         live: View in which the laws are switched; None for a page of pictures.
     """
     page = Page(
-        title=f"Laws learnt from {title}",
         heading=f"What the model leaves of {title}",
         lead=_lead(learning),
         means=_meaning(learning),

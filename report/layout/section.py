@@ -97,8 +97,7 @@ class LiveView:
 class Page:
     """A whole page."""
 
-    title: str  # of the window
-    heading: str  # of the page
+    heading: str  # of the page and its window
     lead: str  # the result in a sentence or two
     key: Sequence[KeyFigure]  # its figures
     sections: Sequence[Section]  # those before the first title stand above the table of contents

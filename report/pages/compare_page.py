@@ -62,7 +62,6 @@ def write_compare_page(
         body: Triangles of what was probed, where it is known.
     """
     page = Page(
-        title=f"Comparison of {title}",
         heading=f"{title} against the model",
         lead=comparison_sentence(found),
         key=_key(found),

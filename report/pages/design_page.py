@@ -87,7 +87,6 @@ def write_design_page(design: Design, folder: Path) -> list[str]:
         standard, volumes = drawn.result()
     chain, body = design.brief.chain, design.placement.standard
     page = Page(
-        title=f"{body.name} for {chain.name}",
         heading=f"{body.name}: material standard for {chain.name}",
         lead=verdict_of_design(design.placement, design.brief.ranges),
         means=_meaning(design),

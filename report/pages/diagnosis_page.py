@@ -84,7 +84,6 @@ def write_diagnosis_page(
     fits = [("starting model", result.start)]
     fits += [("final model", result.fit)] if len(result.steps) > 1 else []
     page = Page(
-        title=f"Diagnosis of {title}",
         heading=f"Diagnosis of {title}",
         lead=verdict_sentence(result),
         key=_key(result),

@@ -85,7 +85,6 @@ def write_setup_page(
         "the programs avoid. The programs do not know any object that is not drawn here."
     )
     content = Page(
-        title=f"Set-up of {standard.name}",
         heading=f"Set-up sheet: {standard.name}{serial} on {plan.chain.name}{which}",
         lead=(
             f"{plural(len(programs.programs), 'program')}, {len(plan.visits)} visits of table "

@@ -55,7 +55,6 @@ def write_study_page(
     shown = [*pictures, *draw_study_volumes(study, folder, remarks)]
     chain, v = study.chain, study.volumetric
     page = Page(
-        title=f"Sensitivities of {chain.name}",
         heading=f"Sensitivities of {chain.name}",
         lead=f"Chain `{chain.notation}`, {len(chain.symbols)} error parameters.",
         means=study_meaning(study),

@@ -57,7 +57,6 @@ def write_uncertainty_page(
     by_face = [_by_face(name, budget) for name, budget in found.items()]
     visits = Table(("run", "touches"), [[f"`{name}`", str(n)] for name, n in runs])
     page = Page(
-        title=f"Uncertainty of {task}",
         heading=f"Uncertainty of {task}",
         lead=sentence,
         means=uncertainty_meaning(found),

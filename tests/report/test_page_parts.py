@@ -26,7 +26,7 @@ LEFT = Table(
 
 
 def page_of(*sections: Section) -> Page:
-    return Page("window", "heading", "Verdict.", [KeyFigure("1 µm", "left", "good")], sections)
+    return Page("heading", "Verdict.", [KeyFigure("1 µm", "left", "good")], sections)
 
 
 def test_every_section_is_in_the_contents(tmp_path: Path) -> None:
