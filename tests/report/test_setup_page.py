@@ -13,13 +13,11 @@ from matstd.probe_paths.campaign.tolerance import STEPS_MM, setup_tolerance
 from matstd.probe_paths.emit.writer import Feeds
 from matstd.probe_paths.language.dialect import Dialect
 from matstd.probe_paths.locate.beside import companions
-from matstd.probe_paths.locate.find import Spread
 from matstd.probe_paths.stations.from_brief import Station
 from matstd.report.pages.setup_page import PAGE, PICTURE, write_setup_page
 from matstd.report.plots import draw_setup
 from matstd.twin.frames import apply, inverse, pose, turn
 from matstd.twin.machine.kinematics import linear_directions, tip
-from matstd.twin.units import DEG
 
 
 @pytest.fixture(scope="module")
@@ -27,7 +25,7 @@ def sheet(golden, tmp_path_factory):
     folder = tmp_path_factory.mktemp("sheet") / "setup"
     programs = golden.programs()
     plan = golden.plan()
-    others = companions(plan, Dialect(), Feeds(), 80.0, Spread(6.0, 1.5 * DEG))
+    others = companions(plan, Dialect(), Feeds(), 80.0)
     others.write(folder)
     page = write_setup_page(folder, [Station(plan, Dialect(), programs)], 0, others)
     assert page == folder / PAGE
