@@ -24,8 +24,7 @@ from matstd.artefact.reach import standing_remarks
 from matstd.twin.errors import DesignError
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
-MOST_ODD = 4
-"""Odd projects that may be accepted."""
+MOST_ODD = 4  # odd projects that may be accepted
 
 VALIDATOR = ("Input should", "valid dictionary", "Tuple should", "value_error", "instance of")
 """Words of the validating library that must not reach a user."""

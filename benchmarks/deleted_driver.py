@@ -36,11 +36,8 @@ from matstd.diagnosis.search import follows_driver  # noqa: E402
 from matstd.twin.files import read_run  # noqa: E402
 from matstd.twin.units import UM  # noqa: E402
 
-VISIBLE = 12.0, 40.0
-"""Signal to noise of the hidden effects beside the geometric model."""
-
-WORSE = 1.05
-"""Error over that without any effect from which a prediction is worse."""
+VISIBLE = 12.0, 40.0  # signal to noise of the hidden effects beside the geometric model
+WORSE = 1.05  # error over that without any effect from which a prediction is worse
 
 SENSORS = ("ambient", "scaleX", "scaleY", "scaleZ", "spindle", "artefact")
 

@@ -27,12 +27,9 @@ from reader_cases import Reader, damage, golden, readers  # noqa: E402
 
 from matstd.twin.errors import DesignError  # noqa: E402
 
-SLOW = 5.0
-"""Longest processor time that any small file may take to be read or refused, s."""
-LONGEST = 900
-"""Longest line of a refusal, characters: it is read on a screen."""
-KEPT = 12
-"""Faults that are shown in full."""
+SLOW = 5.0  # longest processor time that any small file may take to be read or refused, s
+LONGEST = 900  # longest line of a refusal, characters: it is read on a screen
+KEPT = 12  # faults that are shown in full
 
 
 def outcome(reader: Reader, data: bytes) -> tuple[str, str]:

@@ -39,8 +39,7 @@ from matstd.twin.laws import Law, carrier_of
 from matstd.twin.record import Run, without_copies
 from matstd.twin.units import UM
 
-DELETED = "deleted"
-"""Family of effects whose driver is not recorded."""
+DELETED = "deleted"  # family of effects whose driver is not recorded
 
 WITHIN, WORSE, ALIKE = 1.1, 1.02, 0.999
 """Ratio to the error of the true law that is right, and to that without a law that is worse; cosine

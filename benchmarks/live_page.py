@@ -23,8 +23,7 @@ import numpy as np
 from harness import parser_of  # puts simulator and browser on the path
 
 HIDDEN = "thermal-lag(EZZ)"
-LONG = 4000
-"""Touches from which a run is compared only: a diagnosis of it takes minutes."""
+LONG = 4000  # touches from which a run is compared only: a diagnosis of it takes minutes
 
 PAINTED = """const done = arguments[arguments.length - 1], begun = performance.now();
 {};

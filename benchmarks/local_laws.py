@@ -25,8 +25,7 @@ from matstd.twin.laws import carrier_of
 from matstd.twin.library import ordinary_model
 from matstd.twin.record import Touches, with_commanded
 
-VISIBLE = 15.0, 40.0
-"""Signal to noise beside the geometric model."""
+VISIBLE = 15.0, 40.0  # signal to noise beside the geometric model
 
 COMMON, ALIKE = 0.5, 0.95
 """Share of touches in common, and cosine of two carriers over them, that is right."""

@@ -19,8 +19,7 @@ from simulator_experiment import MACHINES
 
 MACHINE_WEIGHTS = (0.6, 0.2, 0.2)
 NOTHING, UNKNOWN = 0.25, 0.125
-SEVERAL = {False: (0.85, 0.15), True: (0.55, 0.3, 0.15)}
-"""How many effects the rest hide."""
+SEVERAL = {False: (0.85, 0.15), True: (0.55, 0.3, 0.15)}  # how many effects the rest hide
 VISIBILITY = {False: (12.0, 40.0), True: (10.5, 28.0)}
 
 

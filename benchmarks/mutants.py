@@ -46,21 +46,13 @@ OPPOSITE = {
 
 
 class Mutant(NamedTuple):
-    """One wrong line.
+    """One wrong line."""
 
-    Attributes:
-        file: Path from the root of the project.
-        line: Its number, from 1.
-        start: Column of the change in the line, and its end.
-        end: The end of the change.
-        text: What stands there instead.
-    """
-
-    file: str
-    line: int
-    start: int
-    end: int
-    text: str
+    file: str  # path from the root of the project
+    line: int  # its number, from 1
+    start: int  # column of the change in the line, and its end
+    end: int  # the end of the change
+    text: str  # what stands there instead
 
     def apply(self, source: str) -> str:
         """The source with this one change."""

@@ -23,12 +23,10 @@ from matstd.twin.files import read_run
 from matstd.twin.model import Model
 from matstd.twin.units import UM
 
-PROMISE = 0.8, 1.25
-"""Least and largest error at other places over the promised one."""
+PROMISE = 0.8, 1.25  # least and largest error at other places over the promised one
 
 
-OF_FIRST = ("artefact-slip", "artefact-jump")
-"""Kinds of effects that belong to the first run alone."""
+OF_FIRST = ("artefact-slip", "artefact-jump")  # kinds of effects that belong to the first run alone
 
 
 @dataclass(frozen=True)

@@ -148,8 +148,7 @@ def gaps_beside(way: Array, axis: Array) -> Array:
     return gap
 
 
-Way = tuple[Array, Array]
-"""Ball centre at begin and end of a straight way, table frame."""
+Way = tuple[Array, Array]  # ball centre at begin and end of a straight way, table frame
 
 
 def way_gaps(points: Array, ways: list[Way], axis: Array, step: float) -> Array:

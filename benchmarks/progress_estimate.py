@@ -27,11 +27,8 @@ from matstd.progress import TimeLeft  # noqa: E402
 Events = list[tuple[float, str, int, int]]
 """Seconds since the beginning, stage, done, total; the last one ends the run."""
 
-PLANS = {True: PLAN, False: LINEAR_PLAN}
-"""The plan by whether the machine has a rotary axis."""
-
-EVERY = 1.0
-"""Seconds between two looks at the time left."""
+PLANS = {True: PLAN, False: LINEAR_PLAN}  # the plan by whether the machine has a rotary axis
+EVERY = 1.0  # seconds between two looks at the time left
 
 
 def recorded(path: Path) -> tuple[bool, Events]:

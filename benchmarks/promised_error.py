@@ -17,8 +17,7 @@ from harness import MACHINES, in_processes, run_options
 
 SEED = 61
 WITHIN = 0.1
-OF_ONE_RUN = ("artefact", "drift")
-"""Effects that belong to a run, not to the machine."""
+OF_ONE_RUN = ("artefact", "drift")  # effects that belong to a run, not to the machine
 
 
 def drawn(rng, machine):

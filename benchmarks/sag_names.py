@@ -17,11 +17,8 @@ import numpy as np
 import serial_arm
 from harness import alike_names, listed, mark, named_steps, names_of, run_options
 
-HEAVIER = 1.6
-"""Weight of the second run over that of the first."""
-
-TIMES = (0.33, 1.0, 3.0, 10.0, 20.0)
-"""Sizes over the usual ones."""
+HEAVIER = 1.6  # weight of the second run over that of the first
+TIMES = (0.33, 1.0, 3.0, 10.0, 20.0)  # sizes over the usual ones
 
 
 def hidden_of(number: int, rng: np.random.Generator):

@@ -19,8 +19,7 @@ ALPHA, U_ALPHA = 10.5e-6, 1.05e-6
 U_KNOWN, U_UNKNOWN = 0.3, 2.0
 U_SCALE = 5e-6
 CASES = ("known", "scaled", "unknown", "unstated")
-POSES = 5
-"""Table poses of each of three set-ups."""
+POSES = 5  # table poses of each of three set-ups
 
 
 def head(case: str, reading: float) -> str:

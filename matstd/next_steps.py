@@ -24,8 +24,7 @@ def next_line(args: Namespace) -> str:
     return f"next: {words}" + (f"   ({why})" if why else "")
 
 
-Step = tuple[str, str] | None
-"""A command and why, None for none."""
+Step = tuple[str, str] | None  # a command and why, None for none
 
 
 def called(command: str, *words: object, more: str = "") -> str:

@@ -15,7 +15,6 @@ if TYPE_CHECKING:
     from matstd.report.pages import Printer
 
 SETUP, GEOMETRY = "setup", "geometry"  # words of `--start`
-
 SHEET = "setup"  # folder of the set-up sheet, and of the programs that are run before the others
 
 SHEET_FILES = (

@@ -18,8 +18,7 @@ from matstd.twin.compute import Progress
 if TYPE_CHECKING:
     from rich.console import Console
 
-FIRST = 0.02
-"""Fraction done from which on the pace of this run says how long the whole takes."""
+FIRST = 0.02  # fraction done from which on the pace of this run says how long the whole takes
 
 WORTH_SHOWING = 0.04
 """Reported fraction from which on a time left is shown: one that began too short cannot grow."""

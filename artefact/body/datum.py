@@ -17,23 +17,15 @@ class DatumSphere:
     """A precision ball on an upright conical stem.
 
     Its parameters are azimuth and elevation, rad: ``p = c + r (cos e cos a, cos e sin a, sin e)``.
-
-    Attributes:
-        name: Feature name, SPH1 ...
-        centre: Shape (3,), artefact frame, mm.
-        radius: Of the ball, mm.
-        stem_radius: Of the stem's cone at the height of the ball's centre, mm.
-        foot_radius: Of the stem at its foot, mm.
-        foot: Height of the foot (the base's top face) in the artefact frame, mm.
-        proves: Whether its touches are held out from the identification, to prove the model.
     """
 
-    name: str
-    centre: Array
-    radius: float
-    stem_radius: float
-    foot_radius: float
-    foot: float
+    name: str  # feature name, SPH1 ...
+    centre: Array  # shape (3,), artefact frame, mm
+    radius: float  # of the ball, mm
+    stem_radius: float  # of the stem's cone at the height of the ball's centre, mm
+    foot_radius: float  # of the stem at its foot, mm
+    foot: float  # height of the foot (the base's top face) in the artefact frame, mm
+    # whether its touches are held out from the identification, to prove the model
     proves: bool = False
 
     def __post_init__(self) -> None:
@@ -106,18 +98,12 @@ class DatumSphere:
 
 @dataclass(frozen=True, slots=True)
 class DatumPlane:
-    """The finished top face of the base, normal +z; its parameters are x and y.
-
-    Attributes:
-        height: Of the face, artefact frame, mm.
-        half_size: Half sides of its outline, mm.
-        corner_radius: Of its outline, mm.
-    """
+    """The finished top face of the base, normal +z; its parameters are x and y."""
 
     name: str
-    height: float
-    half_size: tuple[float, float]
-    corner_radius: float
+    height: float  # of the face, artefact frame, mm
+    half_size: tuple[float, float]  # half sides of its outline, mm
+    corner_radius: float  # of its outline, mm
 
     def point(self, uv: Array) -> Array:
         """Points (N, 3), mm."""
@@ -153,23 +139,14 @@ class DatumPlane:
 
 @dataclass(frozen=True, slots=True)
 class MountingHole:
-    """A counterbored through hole of the base, for a cylinder-head screw.
+    """A counterbored through hole of the base, for a cylinder-head screw."""
 
-    Attributes:
-        name: HOLE1 ...
-        x: Of its axis, artefact frame, mm.
-        y: Of its axis, artefact frame, mm.
-        radius: Of the through hole, mm.
-        bore_radius: Of the counterbore, mm.
-        bore_depth: Of the counterbore below the base's top face, mm.
-    """
-
-    name: str
-    x: float
-    y: float
-    radius: float
-    bore_radius: float
-    bore_depth: float
+    name: str  # HOLE1 ...
+    x: float  # of its axis, artefact frame, mm
+    y: float  # of its axis, artefact frame, mm
+    radius: float  # of the through hole, mm
+    bore_radius: float  # of the counterbore, mm
+    bore_depth: float  # of the counterbore below the base's top face, mm
 
     def __post_init__(self) -> None:
         if not 0.0 < self.radius < self.bore_radius:

@@ -23,23 +23,14 @@ _NUMBERS_AT_ONCE = 2_000_000  # numbers in memory at once during the search of t
 
 @dataclass(frozen=True, eq=False)
 class Contact:
-    """First contact of each of N moving balls.
+    """First contact of each of N moving balls."""
 
-    Attributes:
-        feature: Name of the feature or body, (N,); empty where nothing is met.
-        meeting: What was met of it, (N,), values of `Meeting`.
-        uv: Parameters on the feature, (N, 2); nan unless its surface is met.
-        travel: Of the ball, (N,), mm; nan where nothing is met, zero where it starts inside.
-        point: Contact point, (N, 3), mm; nan unless a surface is met.
-        normal: Outward unit normal there, (N, 3); nan unless a surface is met.
-    """
-
-    feature: np.ndarray
-    meeting: np.ndarray
-    uv: Array
-    travel: Array
-    point: Array
-    normal: Array
+    feature: np.ndarray  # name of the feature or body, (N,); empty where nothing is met
+    meeting: np.ndarray  # what was met of it, (N,), values of `Meeting`
+    uv: Array  # parameters on the feature, (N, 2); nan unless its surface is met
+    travel: Array  # of the ball, (N,), mm; nan where nothing is met, zero where it starts inside
+    point: Array  # contact point, (N, 3), mm; nan unless a surface is met
+    normal: Array  # outward unit normal there, (N, 3); nan unless a surface is met
 
     @property
     def is_surface(self) -> Mask:

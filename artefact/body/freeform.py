@@ -17,9 +17,7 @@ from matstd.twin.sampling import grid_points
 OVERHANG = 6.0
 """Extension of the spline beyond the trimmed rectangle on every side, mm."""
 
-LEAST_OVERHANG = 1.0
-"""Smallest extension of a patch that is read from a file, mm."""
-
+LEAST_OVERHANG = 1.0  # smallest extension of a patch that is read from a file, mm
 _GRID_PITCH = 2.0  # of the start grid, mm; finer than half the smallest concave radius allowed
 _NUMBERS_A_BLOCK = 4_000_000  # numbers in memory at once during the search of start points
 
@@ -38,28 +36,17 @@ class FreeformPatch:
     In the patch frame ``S(u, v) = (u, v, h(u, v))`` with h a tensor B-spline: the poles stand at
     the Greville abscissae, so the parameters are millimetres of the patch's own x and y. The face
     is ``|u| <= a, |v| <= b``; its outward side is +z of the patch frame.
-
-    Attributes:
-        name: Feature name, FF1 ...
-        T_artefact_patch: Pose of the patch frame, shape (4, 4).
-        half_size: (a, b), mm.
-        degree: (ku, kv).
-        knots_u: Shape (nu + ku + 1,), mm.
-        knots_v: Shape (nv + kv + 1,), mm.
-        heights: Control heights, shape (nu, nv), mm.
-        depth: How far the column runs back along -z of the patch frame, mm.
-        errors: Error parameters that this patch reveals.
     """
 
-    name: str
-    T_artefact_patch: Array
-    half_size: tuple[float, float]
-    degree: tuple[int, int]
-    knots_u: Array
-    knots_v: Array
-    heights: Array
-    depth: float
-    errors: tuple[ErrorShare, ...] = ()
+    name: str  # feature name, FF1 ...
+    T_artefact_patch: Array  # pose of the patch frame, shape (4, 4)
+    half_size: tuple[float, float]  # (a, b), mm
+    degree: tuple[int, int]  # (ku, kv)
+    knots_u: Array  # shape (nu + ku + 1,), mm
+    knots_v: Array  # shape (nv + kv + 1,), mm
+    heights: Array  # control heights, shape (nu, nv), mm
+    depth: float  # how far the column runs back along -z of the patch frame, mm
+    errors: tuple[ErrorShare, ...] = ()  # error parameters that this patch reveals
 
     def __post_init__(self) -> None:
         for key, what in (("T_artefact_patch", "pose"), ("heights", "control heights")):

@@ -6,20 +6,14 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class KnownFeature:
-    """Calibration of one feature; standard uncertainties.
-
-    Attributes:
-        u: Of its place in every direction, which all touches on it share, mm.
-        u_tilt: Of its rotations, rad; 0 of a ball.
-        u_form: Of its surface at a point, beyond that, mm.
-        u_axes: Of its place along x, y and z where they differ, mm: a ball is measured on its upper
-            half. `u` is their root mean square then.
-    """
+    """Calibration of one feature; standard uncertainties."""
 
     points: int
-    u: float
-    u_tilt: float
-    u_form: float
+    u: float  # of its place in every direction, which all touches on it share, mm
+    u_tilt: float  # of its rotations, rad; 0 of a ball
+    u_form: float  # of its surface at a point, beyond that, mm
+    # of its place along x, y and z where they differ, mm: a ball is measured on its upper half. `u`
+    # is their root mean square then
     u_axes: tuple[float, float, float] | None = None
 
     @property
@@ -67,20 +61,16 @@ class Verdict:
 
 @dataclass(frozen=True)
 class Known:
-    """The calibration of a standard.
-
-    Attributes:
-        nominal: Fingerprint of the standard as designed.
-        features: By name; for other features the designed shape and assumed uncertainties hold.
-        verdicts: Conformity with the drawing; empty where it was not evaluated.
-        u_scale: Relative standard uncertainty of all its lengths at 20 degC, shared: scales
-            and temperature of the CMM; None where an earlier calibration does not state it.
-    """
+    """The calibration of a standard."""
 
     source: str
-    nominal: str
+    nominal: str  # fingerprint of the standard as designed
+    # by name; for other features the designed shape and assumed uncertainties hold
     features: Mapping[str, KnownFeature]
+    # conformity with the drawing; empty where it was not evaluated
     verdicts: tuple[Verdict, ...] = ()
+    # relative standard uncertainty of all its lengths at 20 degC, shared: scales and temperature of
+    # the CMM; None where an earlier calibration does not state it
     u_scale: float | None = None
 
     @property

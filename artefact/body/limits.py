@@ -14,53 +14,38 @@ from matstd.twin.errors import NotBuildable
 from matstd.twin.frames import Array, apply
 from matstd.twin.units import DEG
 
-MIN_BURIAL = 2.0
-"""Depth of the end of a column inside base or core, at least, mm."""
-
+MIN_BURIAL = 2.0  # depth of the end of a column inside base or core, at least, mm
 _FACE_PITCH = 4.0  # mm, of the points of a face at which the probe needs room
 
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """Limits of cutter, stylus and table.
+    """Limits of cutter, stylus and table."""
 
-    Attributes:
-        min_concave_radius: For the ball-end cutter, mm; never less than the ball's own radius.
-        max_slope: Between a face's normal and its patch's own direction, rad.
-        ball_radius: Of the largest probe ball, mm.
-        gap: Between the ball at any touch and every other body, mm.
-        max_mass: Of the standard, kg.
-        table_radius: Of the disc about the standard's own axis that lies on the table, mm.
-        slot_pitch: Between the slots of the table, which run along its x, one through its middle;
-            0 where screws may stand anywhere, mm.
-    """
-
+    # for the ball-end cutter, mm; never less than the ball's own radius
     min_concave_radius: float = 12.0
-    max_slope: float = 45.0 * DEG
-    ball_radius: float = 3.0
-    gap: float = 1.0
-    max_mass: float = 60.0
+    max_slope: float = 45.0 * DEG  # between a face's normal and its patch's own direction, rad
+    ball_radius: float = 3.0  # of the largest probe ball, mm
+    gap: float = 1.0  # between the ball at any touch and every other body, mm
+    max_mass: float = 60.0  # of the standard, kg
+    # of the disc about the standard's own axis that lies on the table, mm
     table_radius: float = np.inf
+    # between the slots of the table, which run along its x, one through its middle; 0 where screws
+    # may stand anywhere, mm
     slot_pitch: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
 class Constraint:
-    """One constraint as a number: met where `slack` is not negative.
-
-    Attributes:
-        subject: Feature it is about.
-        slack: Margin to the limit in the unit of the value; negative where violated.
-        other: Interfering body; empty where there is none.
-    """
+    """One constraint as a number: met where `slack` is not negative."""
 
     name: str
-    subject: str
+    subject: str  # feature it is about
     value: float
     limit: float
-    slack: float
+    slack: float  # margin to the limit in the unit of the value; negative where violated
     unit: str
-    other: str = ""
+    other: str = ""  # interfering body; empty where there is none
 
     @property
     def features(self) -> tuple[str, ...]:

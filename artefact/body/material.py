@@ -9,26 +9,17 @@ from matstd.twin.elastic import material as usual
 
 @dataclass(frozen=True, slots=True)
 class Material:
-    """Material of the standard.
-
-    Attributes:
-        density: In kg/mm^3.
-        expansion: Coefficient of linear thermal expansion, 1/K.
-        u_expansion: Its standard uncertainty, 1/K; None where it is not stated.
-        modulus: Young's, N/mm^2; None where it is not known.
-        modulus_share: Relative standard uncertainty of the modulus; 0 where it is stated.
-        hardness: As the drawing states it; empty where it is not known.
-    """
+    """Material of the standard."""
 
     name: str = "X40Cr14 (1.2083), hardened"
-    density: float = 7.8e-6
-    expansion: float = 10.5e-6
-    u_expansion: float | None = None
-    modulus: float | None = None
+    density: float = 7.8e-6  # in kg/mm^3
+    expansion: float = 10.5e-6  # coefficient of linear thermal expansion, 1/K
+    u_expansion: float | None = None  # its standard uncertainty, 1/K; None where it is not stated
+    modulus: float | None = None  # Young's, N/mm^2; None where it is not known
     poisson: float = 0.3
     modulus_source: str = "stated"
-    modulus_share: float = 0.0
-    hardness: str = ""
+    modulus_share: float = 0.0  # relative standard uncertainty of the modulus; 0 where it is stated
+    hardness: str = ""  # as the drawing states it; empty where it is not known
 
     @staticmethod
     def usual_of(name: str) -> UsualMaterial | None:

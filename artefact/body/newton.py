@@ -9,9 +9,7 @@ from matstd.artefact.body.spline import Jet
 from matstd.twin.frames import Array, unit
 from matstd.twin.units import NM
 
-CONTACT_TOLERANCE = 1e-4 * NM
-"""Newton stops when the ball is this close to the surface, mm."""
-
+CONTACT_TOLERANCE = 1e-4 * NM  # Newton stops when the ball is this close to the surface, mm
 _MAX_STEPS = 30  # Newton converges in a few steps; a search that needs more has failed
 _MAX_STEP = 4.0  # mm of one step over the surface, within which Newton is trusted
 _MAX_GAP = 0.1 * NM  # mm between ball and surface after the last step; more is no convergence

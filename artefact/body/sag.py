@@ -25,20 +25,14 @@ DIRECTIONS = {
 
 @dataclass(frozen=True, eq=False)
 class Sag:
-    """Displacements of features under the standard's own weight.
-
-    Attributes:
-        down: Direction of weight in machine coordinates, a key of `DIRECTIONS`.
-        share: Standard uncertainty of every displacement, as a share of it.
-        per_weight: By feature, displacement along x, y, z (rows) for weight along x, y, z
-            (columns), (3, 3), mm.
-        modulus: Young's modulus of the computation, N/mm^2; None for a measured sag.
-    """
+    """Displacements of features under the standard's own weight."""
 
     source: str
-    down: str
-    share: float
+    down: str  # direction of weight in machine coordinates, a key of `DIRECTIONS`
+    share: float  # standard uncertainty of every displacement, as a share of it
+    # by feature, displacement along x, y, z (rows) for weight along x, y, z (columns), (3, 3), mm
     per_weight: Mapping[str, Array]
+    # Young's modulus of the computation, N/mm^2; None for a measured sag
     modulus: float | None = None
 
     def with_modulus(self, modulus: float) -> "Sag":

@@ -33,19 +33,12 @@ class Body(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Plate:
-    """An upright prism over a rectangle with rounded corners: the base.
+    """An upright prism over a rectangle with rounded corners: the base."""
 
-    Attributes:
-        half_size: Half sides of the outline, mm.
-        corner_radius: Of the outline, mm; equal to both half sides it is a disc.
-        low: Height of the lower face, mm.
-        high: Height of the upper face, mm.
-    """
-
-    half_size: tuple[float, float]
-    corner_radius: float
-    low: float
-    high: float
+    half_size: tuple[float, float]  # half sides of the outline, mm
+    corner_radius: float  # of the outline, mm; equal to both half sides it is a disc
+    low: float  # height of the lower face, mm
+    high: float  # height of the upper face, mm
 
     @property
     def hull(self) -> tuple[Array, float]:
@@ -62,25 +55,15 @@ class Plate:
 
 @dataclass(frozen=True, slots=True)
 class Cone:
-    """An upright cone frustum: the core, or the stem of a sphere.
+    """An upright cone frustum: the core, or the stem of a sphere."""
 
-    Attributes:
-        x: Of its axis, mm.
-        y: Of its axis, mm.
-        low: Height of the lower face, mm.
-        high: Height of the upper face, mm.
-        low_radius: Radius below, mm.
-        high_radius: Radius above, mm.
-        blend: Whether its foot is rounded into the plane at its lower face.
-    """
-
-    x: float
-    y: float
-    low: float
-    high: float
-    low_radius: float
-    high_radius: float
-    blend: bool = False
+    x: float  # of its axis, mm
+    y: float  # of its axis, mm
+    low: float  # height of the lower face, mm
+    high: float  # height of the upper face, mm
+    low_radius: float  # radius below, mm
+    high_radius: float  # radius above, mm
+    blend: bool = False  # whether its foot is rounded into the plane at its lower face
 
     @property
     def hull(self) -> tuple[Array, float]:
@@ -108,15 +91,10 @@ class Cone:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Ball:
-    """A datum sphere as a solid.
+    """A datum sphere as a solid."""
 
-    Attributes:
-        centre: Shape (3,), mm.
-        radius: In mm.
-    """
-
-    centre: Array
-    radius: float
+    centre: Array  # shape (3,), mm
+    radius: float  # in mm
 
     @property
     def hull(self) -> tuple[Array, float]:
@@ -134,17 +112,12 @@ class Column:
 
     The distance is the larger of two lower bounds: that of the box around the column, and
     ``(z - h) cos(steepest slope)`` over the height field continued sideways as a constant.
-
-    Attributes:
-        patch: The lid and its frame.
-        top: Largest height of the lid above the patch plane, mm.
-        steepest: Cosine of the largest slope of the lid.
-        foot: Height of a plane into which its foot is rounded, mm; None for a sharp edge.
     """
 
-    patch: FreeformPatch
-    top: float
-    steepest: float
+    patch: FreeformPatch  # the lid and its frame
+    top: float  # largest height of the lid above the patch plane, mm
+    steepest: float  # cosine of the largest slope of the lid
+    # height of a plane into which its foot is rounded, mm; None for a sharp edge
     foot: float | None = None
 
     @property

@@ -10,19 +10,12 @@ _FIT_TOLERANCE = 1e-14  # relative change of the unknowns at which the fit ends
 
 
 class FittedSphere(NamedTuple):
-    """A sphere, and the residuals of its points.
+    """A sphere, and the residuals of its points."""
 
-    Attributes:
-        centre: (3,), mm.
-        radius: mm.
-        left: Distance of every point from the sphere, outwards, (N,), mm.
-        cofactor: Covariance of centre and radius for points of unit variance, (4, 4).
-    """
-
-    centre: Array
-    radius: float
-    left: Array
-    cofactor: Array
+    centre: Array  # (3,), mm
+    radius: float  # mm
+    left: Array  # distance of every point from the sphere, outwards, (N,), mm
+    cofactor: Array  # covariance of centre and radius for points of unit variance, (4, 4)
 
 
 def fitted_sphere(points: Array, start: Array | None = None) -> FittedSphere:

@@ -29,15 +29,10 @@ _HULL_MARGIN = 1e-6  # mm added to a hull: squares of coordinates have lost digi
 
 @dataclass(frozen=True, slots=True)
 class Base:
-    """Plate whose lower face (z = 0) sits on the table and whose upper face is the datum plane.
+    """Plate whose lower face (z = 0) sits on the table and whose upper face is the datum plane."""
 
-    Attributes:
-        half_size: Half sides of the outline, mm.
-        corner_radius: Mm; equal to both half sides the base is a disc.
-    """
-
-    half_size: tuple[float, float] = (140.0, 140.0)
-    corner_radius: float = 25.0
+    half_size: tuple[float, float] = (140.0, 140.0)  # half sides of the outline, mm
+    corner_radius: float = 25.0  # mm; equal to both half sides the base is a disc
     thickness: float = 30.0
 
     @property
@@ -48,17 +43,11 @@ class Base:
 
 @dataclass(frozen=True, slots=True)
 class Core:
-    """Upright cone frustum in the middle in which the columns of tilted patches meet.
+    """Upright cone frustum in the middle in which the columns of tilted patches meet."""
 
-    Attributes:
-        low_radius: In the middle of the base, where it begins, mm.
-        high_radius: At the top, mm.
-        height: Of the top above the base's lower face, mm.
-    """
-
-    low_radius: float
-    high_radius: float
-    height: float
+    low_radius: float  # in the middle of the base, where it begins, mm
+    high_radius: float  # at the top, mm
+    height: float  # of the top above the base's lower face, mm
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -43,137 +43,97 @@ Goal = Literal["prove", "identify", "worst", "minutes", "price"]
 
 @dataclass(frozen=True)
 class PlacementOptions:
-    """Size of the standard, number of candidates, and design criterion.
-
-    Attributes:
-        balls: Largest number of balls; fewer where there is no room for more.
-        sites: Number of random faces to choose from.
-        noise: Standard deviation of one touch, mm.
-        criterion: By which faces, balls, poses and touches are chosen.
-        family: Features that prove: `faces`, `flat`, `wavy`, `balls`, or `auto` for those that win.
-        goal: What decides between the families.
-        scan: How a control scans faces; None where it touches only.
-    """
+    """Size of the standard, number of candidates, and design criterion."""
 
     name: str = "FFS"
     serial: str = ""
     patches: int = 6
-    balls: int = 13
-    sites: int = 400
-    noise: float = 1.0 * UM
+    balls: int = 13  # largest number of balls; fewer where there is no room for more
+    sites: int = 400  # number of random faces to choose from
+    noise: float = 1.0 * UM  # standard deviation of one touch, mm
+    # by which faces, balls, poses and touches are chosen
     criterion: CriterionOptions = field(default_factory=lambda: CriterionOptions(potential=0.3))
     choice: TouchOptions = field(default_factory=TouchOptions)
+    # features that prove: `faces`, `flat`, `wavy`, `balls`, or `auto` for those that win
     family: str = "faces"
-    goal: Goal = "prove"
-    scan: Scan | None = None
+    goal: Goal = "prove"  # what decides between the families
+    scan: Scan | None = None  # how a control scans faces; None where it touches only
 
 
 @dataclass(frozen=True)
 class ProgramSettings:
-    """The control and the motions of its programs. None leaves a value to the dialect.
+    """The control and the motions of its programs. None leaves a value to the dialect."""
 
-    Attributes:
-        control: Name of a dialect, or a dialect file of the user's own.
-        further_tools: Tool numbers of the further probes.
-        height_read: Point whose height a result states: `gauge` or `tip`.
-        clearance: Height of the tool above everything while it moves sideways, mm.
-        retract: Below the upper end of Z's travel, where rotary axes may turn, mm.
-        probing_feed: As it stands in a program, mm/min.
-        approach_feed: Along Z below the clearance height, mm/min.
-        turning_feed: Of the last motion towards a rotary position, degrees/min.
-        touches_per_file: Number of touches after which the next visit begins a new file.
-        minutes_per_file: Longest duration of a file that holds more than one visit.
-        dry_run: Height by which dry runs are raised, mm.
-        planes: Whether positions are stated in tilted planes.
-        temperatures: Sensors by name: number of the Q parameter, factor and offset of its value.
-    """
-
-    control: str = "itnc530"
+    control: str = "itnc530"  # name of a dialect, or a dialect file of the user's own
     folder: str | None = None
     tool: int | None = None
-    further_tools: tuple[int, ...] = ()
+    further_tools: tuple[int, ...] = ()  # tool numbers of the further probes
     preset: int | None = None
+    # point whose height a result states: `gauge` or `tip`
     height_read: Literal["gauge", "tip"] | None = None
-    clearance: float = 20.0
-    retract: float = 1.0
-    probing_feed: float = 250.0
-    approach_feed: float = 2000.0
-    turning_feed: float = 1000.0
-    touches_per_file: int = 400
-    minutes_per_file: float = np.inf
-    dry_run: float = 100.0
-    planes: bool = False
+    clearance: float = 20.0  # height of the tool above everything while it moves sideways, mm
+    retract: float = 1.0  # below the upper end of Z's travel, where rotary axes may turn, mm
+    probing_feed: float = 250.0  # as it stands in a program, mm/min
+    approach_feed: float = 2000.0  # along Z below the clearance height, mm/min
+    turning_feed: float = 1000.0  # of the last motion towards a rotary position, degrees/min
+    touches_per_file: int = 400  # number of touches after which the next visit begins a new file
+    minutes_per_file: float = np.inf  # longest duration of a file that holds more than one visit
+    dry_run: float = 100.0  # height by which dry runs are raised, mm
+    planes: bool = False  # whether positions are stated in tilted planes
+    # sensors by name: number of the Q parameter, factor and offset of its value
     temperatures: Mapping[str, tuple[int, float, float]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
 class StudySettings:
-    """Random machines of the maps, and of the proof on the twin.
-
-    Attributes:
-        draws: Number of random machines for the maps; the largest number where digits are set.
-        digits: Significant digits that must be stable (JCGM 101); 0 for no such test.
-        tolerance: Allowed volumetric error, mm; infinite where none is stated.
-        machines: Number of random machines of the proof.
-        visits: Number of virtual visits from which the uncertainty of the task is evaluated.
-        body_temperature: Of the standard on the twin as its thermometer reads, degC.
-        body_u: Standard uncertainty of that reading, K.
-    """
+    """Random machines of the maps, and of the proof on the twin."""
 
     poses: int = 2000
+    # number of random machines for the maps; the largest number where digits are set
     draws: int = 2000
-    digits: int = 0
-    tolerance: float = np.inf
-    machines: int = 3
-    visits: int = 10
-    body_temperature: float = 22.0
-    body_u: float = 0.3
+    digits: int = 0  # significant digits that must be stable (JCGM 101); 0 for no such test
+    tolerance: float = np.inf  # allowed volumetric error, mm; infinite where none is stated
+    machines: int = 3  # number of random machines of the proof
+    visits: int = 10  # number of virtual visits from which the uncertainty of the task is evaluated
+    body_temperature: float = 22.0  # of the standard on the twin as its thermometer reads, degC
+    body_u: float = 0.3  # standard uncertainty of that reading, K
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Brief(Displayed):
-    """The request of a design in base units.
-
-    Attributes:
-        ranges: Smallest and largest reading of every axis in the workspace, mm or rad; an axis left
-            out has its whole travel.
-        errors: Expected machines; None for the default population.
-        probes: First the probe of the design, then probes for what it does not reach.
-        setups: Poses of the standard; the first is that of the design.
-        ball: Datum ball that monitors the probe; None where there is none.
-        blank: Base, fittings, material and limits of the standard.
-        overhang: Allowed reach of the base beyond the edge of the table, mm; None for the default.
-        riser: Height of a riser or pallet under the seat, mm.
-        first_mode: Least natural frequency of the standard on rigid screws, Hz; 0 for any.
-        task: Measuring task; by default every touch on the faces.
-        down: Direction of weight in machine coordinates.
-        machine_path: The machine file; None where there is none.
-    """
+    """The request of a design in base units."""
 
     chain: Chain
+    # smallest and largest reading of every axis in the workspace, mm or rad; an axis left out has
+    # its whole travel
     ranges: Mapping[str, tuple[float, float]] = field(default_factory=dict)
-    errors: Population | None = None
+    errors: Population | None = None  # expected machines; None for the default population
+    # first the probe of the design, then probes for what it does not reach
     probes: tuple[Probe, ...] = (Probe(),)
+    # poses of the standard; the first is that of the design
     setups: tuple[Setup, ...] = (Setup("a"),)
     table: Solid = field(default_factory=round_table)
     bodies: tuple[Body, ...] = ()
-    ball: DatumBall | None = None
+    ball: DatumBall | None = None  # datum ball that monitors the probe; None where there is none
+    # base, fittings, material and limits of the standard
     blank: Blank = field(default_factory=Blank)
+    # allowed reach of the base beyond the edge of the table, mm; None for the default
     overhang: float | None = None
-    riser: float = 0.0
+    riser: float = 0.0  # height of a riser or pallet under the seat, mm
+    # least natural frequency of the standard on rigid screws, Hz; 0 for any
     first_mode: float = 0.0
     options: PlacementOptions = field(default_factory=PlacementOptions)
     programs: ProgramSettings = field(default_factory=ProgramSettings)
     study: StudySettings = field(default_factory=StudySettings)
-    task: Task = field(default_factory=Task)
+    task: Task = field(default_factory=Task)  # measuring task; by default every touch on the faces
     seed: int = 0
-    down: str = "-Z"
+    down: str = "-Z"  # direction of weight in machine coordinates
     author: str = "not stated"
     organisation: str = "not stated"
     approved: str = "not stated"
     date: str = "not stated"
     path: Path = Path("project.toml")
-    machine_path: Path | None = None
+    machine_path: Path | None = None  # the machine file; None where there is none
     remarks: tuple[str, ...] = ()
 
     @property

@@ -25,8 +25,7 @@ _DENSITY_OFF, _EXPANSION_OFF = 0.2, 6e-6
 """By which stated values of a named material differ from its usual ones: a share, and 1/K. Alloys
 of one name differ by half of that."""
 
-MIN_SLOT_PITCH = 20.0
-"""Smallest distance between two slots of a table, mm (ISO 299)."""
+MIN_SLOT_PITCH = 20.0  # smallest distance between two slots of a table, mm (ISO 299)
 
 
 class Faults(list[BadFile]):

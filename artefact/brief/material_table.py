@@ -7,8 +7,7 @@ from matstd.twin.elastic import material_names
 from matstd.twin.files import Table
 from matstd.twin.units import KG_M3
 
-STEEL = "X40Cr14 (1.2083), hardened"
-"""Material of a standard unless another is stated."""
+STEEL = "X40Cr14 (1.2083), hardened"  # material of a standard unless another is stated
 
 
 class MaterialTable(Table):

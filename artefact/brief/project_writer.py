@@ -8,8 +8,7 @@ from matstd.artefact.brief.workshop_tables import TableTable
 from matstd.twin.files import SetupTable, Table
 from matstd.twin.text import toml_value
 
-COMMENT = 46
-"""Column at which comments begin."""
+COMMENT = 46  # column at which comments begin
 
 _OTHERS: dict[str, type[Table]] = {"setup.a": SetupTable, "workshop.table": TableTable}
 """Tables within tables."""

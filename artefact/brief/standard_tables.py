@@ -12,11 +12,8 @@ from matstd.artefact.worth import Calibration, CriterionOptions, TouchOptions
 from matstd.twin.files import Pair, Table
 from matstd.twin.units import DEG, UM
 
-BASE_THICKNESS = 30.0
-"""Thickness of the plate of every standard, mm."""
-
-CORNER_RADIUS = 25.0
-"""Corner radius of that plate, mm."""
+BASE_THICKNESS = 30.0  # thickness of the plate of every standard, mm
+CORNER_RADIUS = 25.0  # corner radius of that plate, mm
 
 
 FEWEST_PATCHES = 3
@@ -28,8 +25,7 @@ FINISHING_RADIUS = 3.0
 LEAST_SIDE = 160.0
 """Smallest side of a base, mm."""
 
-LEAST_HEIGHT = 120.0
-"""Smallest height of a standard, mm."""
+LEAST_HEIGHT = 120.0  # smallest height of a standard, mm
 
 _HIGHEST_SPHERE = 130.0 / 220.0
 """Centre of the highest sphere above the seat, as a share of the blank's height."""

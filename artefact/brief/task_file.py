@@ -50,22 +50,18 @@ class TaskTable(Table):
 
 @dataclass(frozen=True)
 class Task:
-    """A measuring task: surfaces, table poses and tolerance.
-
-    Attributes:
-        slope: Smallest and largest angle of a normal to the workpiece's z, rad.
-        curvature: Range of the largest absolute principal curvature, 1/mm.
-        rotary: Ranges of rotary readings by letter, rad; other axes are free.
-        tolerance: Width of the profile tolerance zone, symmetric to the surface, mm; None for none.
-        u_w: Standard uncertainty contributed by the workpieces, mm.
-    """
+    """A measuring task: surfaces, table poses and tolerance."""
 
     name: str = "every touch on the freeform faces"
+    # smallest and largest angle of a normal to the workpiece's z, rad
     slope: tuple[float, float] = (0.0, np.pi)
+    # range of the largest absolute principal curvature, 1/mm
     curvature: tuple[float, float] = (0.0, np.inf)
+    # ranges of rotary readings by letter, rad; other axes are free
     rotary: dict[str, tuple[float, float]] = field(default_factory=dict)
+    # width of the profile tolerance zone, symmetric to the surface, mm; None for none
     tolerance: float | None = None
-    u_w: float = 0.0
+    u_w: float = 0.0  # standard uncertainty contributed by the workpieces, mm
 
 
 def read_task(path: str | Path) -> Task:

@@ -21,8 +21,7 @@ from matstd.twin.errors import BadFile
 from matstd.twin.files import Pair, Table, Vector
 from matstd.twin.units import DEG, UM
 
-Cylinders = tuple[tuple[float, float], ...]
-"""(end, diameter) from the ball centre upwards, mm."""
+Cylinders = tuple[tuple[float, float], ...]  # (end, diameter) from the ball centre upwards, mm
 
 
 class ProbeTable(Table):

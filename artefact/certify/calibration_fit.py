@@ -40,8 +40,7 @@ from matstd.twin.units import UM
 MIN_BALL, MIN_FACE = 6, 20
 """Fewest points on a ball (four determine it) and on a face (six move it, the rest bend it)."""
 
-MIN_BALLS = 3
-"""Fewest balls that determine the alignment."""
+MIN_BALLS = 3  # fewest balls that determine the alignment
 
 _OUTLIER_LIMIT = 6.0
 """Robust standard deviations beyond which a point is left out as dust or mistake; not one of a
@@ -54,29 +53,19 @@ _UNIT_TOLERANCE = 0.01  # relative difference of distances: parts agree better, 
 
 @dataclass(frozen=True)
 class CalibrationFit:
-    """A calibrated standard and the results of its calibration.
-
-    Attributes:
-        moved: Largest deviation of every feature from the design, mm.
-        offset: Mean deviation of every face along the normal, mm.
-        u_radius: Standard uncertainty of the radius of every ball by its points, mm.
-        left: Root mean square of the residuals of every feature, mm.
-        form: Peak to valley of every ball by its points, less what their noise makes, mm.
-        u_point: Standard uncertainty of one point as stated, mm.
-        unseen: Faces on which dense lines are missing, so that `waviness` is assumed.
-        remarks: Unused points and other irregularities.
-    """
+    """A calibrated standard and the results of its calibration."""
 
     standard: Standard
-    moved: dict[str, float]
-    offset: dict[str, float]
-    u_radius: dict[str, float]
-    left: dict[str, float]
+    moved: dict[str, float]  # largest deviation of every feature from the design, mm
+    offset: dict[str, float]  # mean deviation of every face along the normal, mm
+    u_radius: dict[str, float]  # standard uncertainty of the radius of every ball by its points, mm
+    left: dict[str, float]  # root mean square of the residuals of every feature, mm
+    # peak to valley of every ball by its points, less what their noise makes, mm
     form: dict[str, float]
-    unseen: tuple[str, ...]
+    unseen: tuple[str, ...]  # faces on which dense lines are missing, so that `waviness` is assumed
     waviness: float
-    u_point: float
-    remarks: tuple[str, ...]
+    u_point: float  # standard uncertainty of one point as stated, mm
+    remarks: tuple[str, ...]  # unused points and other irregularities
 
     @property
     def verdicts(self) -> tuple[Verdict, ...]:

@@ -26,20 +26,13 @@ _DIAMETER = ("diameter", "d", "dia")
 
 @dataclass(frozen=True, eq=False)
 class CmmPoints:
-    """Points on features, in the frame of the CMM's part alignment.
-
-    Attributes:
-        feature: Name of the feature of every point, (N,).
-        point: On the surface, or the centre of a ball where a diameter is given, (N, 3), mm.
-        diameter: Of a ball that was evaluated by the CMM, (N,), mm; nan for a point.
-        line: Line number in the file, (N,).
-    """
+    """Points on features, in the frame of the CMM's part alignment."""
 
     path: Path
-    feature: Labels
-    point: Array
-    diameter: Array
-    line: np.ndarray
+    feature: Labels  # name of the feature of every point, (N,)
+    point: Array  # on the surface, or the centre of a ball where a diameter is given, (N, 3), mm
+    diameter: Array  # of a ball that was evaluated by the CMM, (N,), mm; nan for a point
+    line: np.ndarray  # line number in the file, (N,)
     remarks: tuple[str, ...]
 
 

@@ -16,11 +16,8 @@ from matstd.twin.errors import NotReachable
 from matstd.twin.frames import Array
 from matstd.twin.units import DEG
 
-TIP = 1.5
-"""Radius of the ball of the stylus, mm."""
-
-LENGTHS = (50.0, 75.0, 100.0, 150.0)
-"""From the ball's centre to the module, mm."""
+TIP = 1.5  # radius of the ball of the stylus, mm
+LENGTHS = (50.0, 75.0, 100.0, 150.0)  # from the ball's centre to the module, mm
 
 TO_PIVOT = 110.0
 """From the end of the stylus to the pivot of the head, mm: module of 50 and half a head of 120."""

@@ -22,21 +22,14 @@ from matstd.twin.errors import NotEnoughData
 from matstd.twin.frames import Array
 from matstd.twin.units import DEG, T_REF
 
-PITCH = 5.0
-"""Between points on a face, mm: half the shortest wave that the control heights resolve."""
+PITCH = 5.0  # between points on a face, mm: half the shortest wave that the control heights resolve
 
 LINE_PITCH = 1.5
 """Between points on the two lines across a face, mm: waves of 3 mm and more are seen."""
 
-RIM = 2.0
-"""Between a point and the edge of its face, mm: a stylus of 3 mm touches the face alone."""
-
-LIFT = 15.0
-"""Of the clearance plane above the body, mm."""
-
-APPROACH = 3.0
-"""Approach distance of a point, mm."""
-
+RIM = 2.0  # between a point and the edge of its face, mm: a stylus of 3 mm touches the face alone
+LIFT = 15.0  # of the clearance plane above the body, mm
+APPROACH = 3.0  # approach distance of a point, mm
 _RINGS = ((60.0, 4), (25.0, 8))  # elevation, degrees, and number of points below the pole
 _PLANE_POINTS = 8
 

@@ -25,24 +25,16 @@ _GRID = 3.0  # mm between the places over which the uncertainty of the surface i
 
 @dataclass(frozen=True, eq=False)
 class CorrectedFace:
-    """A face as measured.
-
-    Attributes:
-        u_form: Root mean square standard uncertainty of the surface over the face, with waves, mm.
-        seen: Whether a line of points shows short waves along u and along v.
-        u_tilt: Standard uncertainty of its rotations by its points, rad.
-        moved: Largest deviation from the design along the normal, mm.
-        offset: Mean of these deviations over the face, mm.
-        left: Deviation of every point from the corrected face, (N,), mm.
-    """
+    """A face as measured."""
 
     patch: FreeformPatch
+    # root mean square standard uncertainty of the surface over the face, with waves, mm
     u_form: float
-    u_tilt: float
-    moved: float
-    offset: float
-    left: Array
-    seen: tuple[bool, bool]
+    u_tilt: float  # standard uncertainty of its rotations by its points, rad
+    moved: float  # largest deviation from the design along the normal, mm
+    offset: float  # mean of these deviations over the face, mm
+    left: Array  # deviation of every point from the corrected face, (N,), mm
+    seen: tuple[bool, bool]  # whether a line of points shows short waves along u and along v
 
 
 def corrected_face(
@@ -148,17 +140,11 @@ def _bending(patch: FreeformPatch) -> csr_array:
 
 @dataclass(frozen=True, eq=False)
 class _Smooth:
-    """A penalised fit at fixed foot points.
+    """A penalised fit at fixed foot points."""
 
-    Attributes:
-        B: Deviations per coefficient, (N, M).
-        matrix: ``B^T B / N`` and the weighted penalty.
-        used: Trace of H, which makes fitted deviations of measured ones.
-    """
-
-    B: csr_array
-    matrix: Eliminated
-    used: float
+    B: csr_array  # deviations per coefficient, (N, M)
+    matrix: Eliminated  # ``B^T B / N`` and the weighted penalty
+    used: float  # trace of H, which makes fitted deviations of measured ones
 
     @staticmethod
     def of(B: csr_array, d: Array, penalty: csr_array, size: int) -> "_Smooth":

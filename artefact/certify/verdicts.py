@@ -33,19 +33,13 @@ _K, _ONE_SIDED = (
 
 @dataclass(frozen=True, slots=True)
 class Allowed:
-    """Tolerances by drawing and calibration.
+    """Tolerances by drawing and calibration."""
 
-    Attributes:
-        drawing: Largest deviations of `diameter` and `position` of a ball, `profile` of a face, mm.
-        u_feature: Standard uncertainty that the points of a feature share, mm.
-        u_temperature: Standard uncertainty of the temperature of the piece about 20 degC, K.
-        u_scale: Relative standard uncertainty of the scales of the CMM.
-    """
-
+    # largest deviations of `diameter` and `position` of a ball, `profile` of a face, mm
     drawing: Mapping[str, float]
-    u_feature: float
-    u_temperature: float
-    u_scale: float = 0.0
+    u_feature: float  # standard uncertainty that the points of a feature share, mm
+    u_temperature: float  # standard uncertainty of the temperature of the piece about 20 degC, K
+    u_scale: float = 0.0  # relative standard uncertainty of the scales of the CMM
 
     def u_size(self, expansion: float) -> float:
         """Relative standard uncertainty of all lengths, which every feature shares."""
@@ -54,24 +48,17 @@ class Allowed:
 
 @dataclass(frozen=True, slots=True)
 class CommonCause:
-    """One cause of many deviations.
+    """One cause of many deviations."""
 
-    Attributes:
-        kind: `radius`: the same error of all radii; `scale`: of all distances; `ball`: of a few
-            balls alone.
-        value: Mm of radius, the largest of `ball`; or the relative scale.
-        spread: Largest difference of another ball from it, mm; standard uncertainty of the scale.
-        features: Balls whose radii alone are wrong.
-        on_faces: Whether all faces are offset by the same amount along their normals.
-        temperature: Above 20 degC that would explain the scale by expansion, K; nan if none.
-    """
-
+    # `radius`: the same error of all radii; `scale`: of all distances; `ball`: of a few balls alone
     kind: str
-    value: float
+    value: float  # mm of radius, the largest of `ball`; or the relative scale
+    # largest difference of another ball from it, mm; standard uncertainty of the scale
     spread: float
-    on_faces: bool = False
+    on_faces: bool = False  # whether all faces are offset by the same amount along their normals
+    # above 20 degC that would explain the scale by expansion, K; nan if none
     temperature: float = float("nan")
-    features: tuple[str, ...] = ()
+    features: tuple[str, ...] = ()  # balls whose radii alone are wrong
 
 
 def with_verdicts(

@@ -17,29 +17,22 @@ from numpy.typing import NDArray
 
 from matstd.twin.frames import Array
 
-WIDTH_OF_LINE = 0.4
-"""Between the outermost points of one line, across it, mm."""
+WIDTH_OF_LINE = 0.4  # between the outermost points of one line, across it, mm
 
 GAP = 2.0
 """Largest distance between neighbours of a line, mm: waves of 4 mm are seen."""
 
-SPAN = 0.6
-"""Smallest length of a line, as a share of the face."""
+SPAN = 0.6  # smallest length of a line, as a share of the face
 
 MAX_SHARE_OF_LINES = 0.6
 """Share of the points of a face above which lines are no longer its exception: it was scanned."""
 
 
 class Lines(NamedTuple):
-    """Dense lines among the points of a face.
+    """Dense lines among the points of a face."""
 
-    Attributes:
-        judging: Points of lines, which judge the fit of the others, (N,).
-        seen: Whether waves along u and along v are seen.
-    """
-
-    judging: NDArray[np.bool_]
-    seen: tuple[bool, bool]
+    judging: NDArray[np.bool_]  # points of lines, which judge the fit of the others, (N,)
+    seen: tuple[bool, bool]  # whether waves along u and along v are seen
 
 
 def dense_lines(uv: Array, half_size: tuple[float, float]) -> Lines:

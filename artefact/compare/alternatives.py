@@ -20,8 +20,7 @@ from matstd.twin.frames import Array, fixed_xyz, pose
 from matstd.twin.record import IntArray, Setup
 from matstd.twin.units import DEG
 
-STYLUS = 60.0
-"""Additional length of a second stylus, mm."""
+STYLUS = 60.0  # additional length of a second stylus, mm
 
 SETUPS = {
     "a second set-up, turned by 90° about Z": ((0.0, 0.0, 0.0), (0.0, 0.0, 90.0)),
@@ -37,34 +36,25 @@ _MAX_CANDIDATES = 1500  # candidates for the second half of the touches
 
 @dataclass(frozen=True, eq=False)
 class JoinedRows:
-    """Rows of touches of which some are made with another stylus or set-up.
+    """Rows of touches of which some are made with another stylus or set-up."""
 
-    Attributes:
-        W: Whitened rows, (N, P + own): columns of set-up and tool are repeated for a second
-            set-up, a second stylus, so that each has its own.
-        prior_sd: Shape (P + own,).
-    """
-
+    # whitened rows, (N, P + own): columns of set-up and tool are repeated for a second set-up, a
+    # second stylus, so that each has its own
     W: Array
-    prior_sd: Array
+    prior_sd: Array  # shape (P + own,)
 
 
 @dataclass(frozen=True)
 class Alternative:
-    """Benefit of another stylus or set-up.
-
-    Attributes:
-        rank_gained: Additional combinations of machine errors that are determined.
-        variance_ratio: Mean predicted variance of the tool point relative to that of as many
-            touches of the design; below one is better.
-        refusal: Why the machine cannot do it; empty where it can.
-    """
+    """Benefit of another stylus or set-up."""
 
     name: str
     is_possible: bool
-    rank_gained: int
+    rank_gained: int  # additional combinations of machine errors that are determined
+    # mean predicted variance of the tool point relative to that of as many touches of the design;
+    # below one is better
     variance_ratio: float
-    refusal: str = ""
+    refusal: str = ""  # why the machine cannot do it; empty where it can
 
 
 def other_setups(criterion: Criterion) -> dict[str, ProbeReach]:

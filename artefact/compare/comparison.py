@@ -34,9 +34,7 @@ from matstd.twin.numbers import rms
 
 _SCATTER_SIZE = 3000  # candidate touches of the ideal scatter
 _DRAWS = 5  # of random touches, averaged
-
-COUNTS = (4, 5, 7, 13)
-"""Numbers of spheres of the rivals."""
+COUNTS = (4, 5, 7, 13)  # numbers of spheres of the rivals
 
 RIVAL_ROUNDS = 20
 """Rounds on the way to the relaxed optimum of a rival: exchanges improve the rest, and a hundred
@@ -45,37 +43,25 @@ rounds took half a minute per body."""
 
 @dataclass(frozen=True)
 class Rival:
-    """One artefact at the same number of touches and of table poses, under the same rules.
-
-    Attributes:
-        rms: Predicted root mean square of the unknown tool point deviation over the probed volume
-            after chosen touches, mm.
-        p95: 95 % of the poses stay below this, mm.
-        rms_user: The same as `rms` over the user's workspace, mm.
-        p95_user: The same as `p95` over the user's workspace, mm.
-        rms_random: As `rms`, after random touches on the same artefact, mm.
-        estimable: Effective degrees of freedom: combinations of parameters that are determined.
-        visible: Number of the effects in `could_be_visible` that these touches show.
-        could_be_visible: Number of effects that any touches could show.
-        value: Of the criterion that chose the touches.
-        available: Number of different candidate touches; if it is smaller than the number of
-            touches, some are repeated.
-        body: The artefact; None for ideal scatter.
-    """
+    """One artefact at the same number of touches and of table poses, under the same rules."""
 
     name: str
+    # predicted root mean square of the unknown tool point deviation over the probed volume after
+    # chosen touches, mm
     rms: float
-    p95: float
-    rms_user: float
-    p95_user: float
-    rms_random: float
-    estimable: float
-    visible: int
-    could_be_visible: int
-    value: float
+    p95: float  # 95 % of the poses stay below this, mm
+    rms_user: float  # the same as `rms` over the user's workspace, mm
+    p95_user: float  # the same as `p95` over the user's workspace, mm
+    rms_random: float  # as `rms`, after random touches on the same artefact, mm
+    estimable: float  # effective degrees of freedom: combinations of parameters that are determined
+    visible: int  # number of the effects in `could_be_visible` that these touches show
+    could_be_visible: int  # number of effects that any touches could show
+    value: float  # of the criterion that chose the touches
     touches: Requests
+    # number of different candidate touches; if it is smaller than the number of touches, some are
+    # repeated
     available: int
-    body: Standard | None = None
+    body: Standard | None = None  # the artefact; None for ideal scatter
 
 
 def evaluate_rival(
@@ -137,16 +123,12 @@ def prior_rms(criterion: Criterion) -> tuple[float, float]:
 
 @dataclass(frozen=True, eq=False)
 class Compared:
-    """Other artefacts at as many touches.
+    """Other artefacts at as many touches."""
 
-    Attributes:
-        of_balls: Those of balls alone, on which a standard is built.
-        unreachable: Names of those without room on the blank or with too few possible touches.
-        all: Waits for every artefact, in the order in which they are reported.
-    """
-
-    of_balls: tuple[Rival, ...]
+    of_balls: tuple[Rival, ...]  # those of balls alone, on which a standard is built
+    # names of those without room on the blank or with too few possible touches
     unreachable: tuple[str, ...]
+    # waits for every artefact, in the order in which they are reported
     all: Callable[[], tuple[Rival, ...]]
 
 
@@ -262,22 +244,14 @@ def _on_balls(
 
 @dataclass(frozen=True, eq=False)
 class _Job:
-    """An artefact whose touches are to be chosen.
-
-    Attributes:
-        here: Criterion on the artefact, or on none.
-        tried: Touches that can be made.
-        lots: Some of them at random.
-        by: What they are chosen for, a name in `CRITERIA`; empty for the first lot.
-        is_relaxed: Whether they are chosen as those of the standard.
-    """
+    """An artefact whose touches are to be chosen."""
 
     name: str
-    here: Criterion
-    tried: Requests
-    lots: list[Requests]
-    by: str
-    is_relaxed: bool = False
+    here: Criterion  # criterion on the artefact, or on none
+    tried: Requests  # touches that can be made
+    lots: list[Requests]  # some of them at random
+    by: str  # what they are chosen for, a name in `CRITERIA`; empty for the first lot
+    is_relaxed: bool = False  # whether they are chosen as those of the standard
 
 
 def _judged(jobs: Sequence[_Job], options: TouchOptions, library: Visibility) -> list[Rival]:

@@ -33,43 +33,32 @@ from matstd.twin.model import Model
 
 @dataclass(frozen=True)
 class DeterminedParameter:
-    """A parameter whose variance the touches reduce at least tenfold; base units.
-
-    Attributes:
-        expected: Standard deviation before the touches.
-        u: Standard uncertainty after them.
-        unit: Base unit.
-    """
+    """A parameter whose variance the touches reduce at least tenfold; base units."""
 
     name: str
-    expected: float
-    u: float
-    unit: str
+    expected: float  # standard deviation before the touches
+    u: float  # standard uncertainty after them
+    unit: str  # base unit
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class IdentifiabilityReport(Displayed):
-    """What the touches of a design can and cannot determine.
-
-    Attributes:
-        readings: Smallest and largest reading of every programmed axis in them, mm or rad.
-        gauge: Rank, condition numbers, freedoms and groups, each freedom with what resolves it.
-        freedoms: The freedoms, shapes of the same error together.
-        combinations: Determined combinations of machine errors, the most certain first.
-        alone: Individually determined machine errors, the most certain first.
-        degrees: Polynomial degree of every component error that the touches support.
-        alternatives: Benefit of a second stylus length or set-up.
-    """
+    """What the touches of a design can and cannot determine."""
 
     touches: int
     model: Model
+    # smallest and largest reading of every programmed axis in them, mm or rad
     readings: Mapping[str, tuple[float, float]]
+    # rank, condition numbers, freedoms and groups, each freedom with what resolves it
     gauge: Identifiability
-    freedoms: tuple[FreedomFamily, ...]
+    freedoms: tuple[FreedomFamily, ...]  # the freedoms, shapes of the same error together
+    # determined combinations of machine errors, the most certain first
     combinations: tuple[EstimableCombination, ...]
+    # individually determined machine errors, the most certain first
     alone: tuple[DeterminedParameter, ...]
+    # polynomial degree of every component error that the touches support
     degrees: tuple[Degree, ...]
-    alternatives: tuple[Alternative, ...]
+    alternatives: tuple[Alternative, ...]  # benefit of a second stylus length or set-up
 
     @property
     def chain(self) -> Chain:

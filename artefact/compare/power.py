@@ -43,16 +43,11 @@ _MIN_TIP_SHARE = 1e-9  # share of an effect at the tool point below which a task
 
 @dataclass(frozen=True, eq=False)
 class Power:
-    """Power of some touches to detect a wrong model.
-
-    Attributes:
-        effects: Names of the effects that the model lacks, one at a time, (E,).
-        power: Probability of detection, (E,).
-    """
+    """Power of some touches to detect a wrong model."""
 
     touches: int
-    effects: tuple[str, ...]
-    power: Array
+    effects: tuple[str, ...]  # names of the effects that the model lacks, one at a time, (E,)
+    power: Array  # probability of detection, (E,)
 
     @property
     def found(self) -> int:

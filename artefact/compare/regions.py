@@ -24,21 +24,13 @@ _COVERED_BELOW = 0.1  # of the expected error: where less remains unknown, a pos
 
 @dataclass(frozen=True, slots=True)
 class WorstRegions:
-    """Poses that are most often among the worst of a machine, and how well touches determine them.
+    """Poses most often among the worst of a machine, and how well touches determine them."""
 
-    Attributes:
-        poses: Their number, a twentieth of all poses.
-        recurrence: Mean share of machines for which such a pose is among the worst 5 %.
-        before: Expected error there, rms, mm.
-        after: Error that remains unknown after the touches, rms, mm.
-        covered: Share of these poses at which at most a tenth of the error remains.
-    """
-
-    poses: int
-    recurrence: float
-    before: float
-    after: float
-    covered: float
+    poses: int  # their number, a twentieth of all poses
+    recurrence: float  # mean share of machines for which such a pose is among the worst 5 %
+    before: float  # expected error there, rms, mm
+    after: float  # error that remains unknown after the touches, rms, mm
+    covered: float  # share of these poses at which at most a tenth of the error remains
 
 
 def worst_regions(

@@ -19,18 +19,14 @@ from matstd.twin.frames import Array
 
 @dataclass(frozen=True, eq=False)
 class Feasibility:
-    """Result of the feasibility checks of a brief.
-
-    Attributes:
-        poses: Candidate table poses, (K, R), rad, at which Z can rise above the standard.
-        room: Patches that stand side by side; None where too little is reached, or where the
-            project asks for no small faces.
-        refusal: Binding limit with the feasible changes that were found; None where nothing binds.
-    """
+    """Result of the feasibility checks of a brief."""
 
     places: PlacesInReach
-    poses: Array
+    poses: Array  # candidate table poses, (K, R), rad, at which Z can rise above the standard
+    # patches that stand side by side; None where too little is reached, or where the project asks
+    # for no small faces
     room: Room | None = None
+    # binding limit with the feasible changes that were found; None where nothing binds
     refusal: DesignError | None = None
 
     def check(self) -> None:

@@ -39,21 +39,16 @@ _MASS_SHARE = 0.97  # of the mass left for the faces: their shares are estimates
 
 @dataclass(frozen=True, eq=False)
 class Room:
-    """The largest set of bodies found to fit side by side.
-
-    Attributes:
-        reached: Number of these within angle and travels of the machine.
-        unseen: Obstacle that keeps the probe from more faces; empty where there is none.
-        least: Mass of the lightest such standard found, kg; 0 where these bodies are light enough.
-    """
+    """The largest set of bodies found to fit side by side."""
 
     blank: Blank
     wanted: int
     tried: int
-    reached: int
+    reached: int  # number of these within angle and travels of the machine
     faces: tuple[FreeformPatch, ...]
     balls: tuple[DatumSphere, ...]
-    unseen: str = ""
+    unseen: str = ""  # obstacle that keeps the probe from more faces; empty where there is none
+    # mass of the lightest such standard found, kg; 0 where these bodies are light enough
     least: float = 0.0
 
     @property

@@ -34,11 +34,8 @@ SEAT_TOLERANCE = 1.0
 
 Mesh = tuple[Array, np.ndarray]
 
-_AWAY = 0.5
-"""Cosine between weight and the way out of the seat from which on a standard hangs."""
-
-_BALL_BESIDE = 100.0
-"""A bracket on the table holds a ball so far beside its face, mm."""
+_AWAY = 0.5  # cosine between weight and the way out of the seat from which on a standard hangs
+_BALL_BESIDE = 100.0  # a bracket on the table holds a ball so far beside its face, mm
 
 _OVERHANG, _MORE = 40.0, 5.0
 """Default overhang of a base over the edge of the table, mm, and the margin over the overhang in
@@ -47,28 +44,22 @@ the middle of the table where that is larger: the example has 33.9 mm at its cor
 _SHIFTS = (1.0, 2.0, 5.0, 10.0, 20.0, 30.0, 50.0, 75.0, 100.0, 150.0, 200.0, 300.0, 400.0)
 """Displacements of a clamp that are tried, mm."""
 
-_SIDES = 256
-"""Sides of the polygon round a disc: 0.008 mm outside it at a diameter of 200 mm."""
+_SIDES = 256  # sides of the polygon round a disc: 0.008 mm outside it at a diameter of 200 mm
 
 _TURNS = ((0.0, 0.0, 0.0), (-90.0, 0.0, 0.0), (90.0, 0.0, 0.0), (0.0, 90.0, 0.0), (0.0, -90.0, 0.0))
 """Orientations of a standard that are tried, degrees."""
 
-_HALVES = 7
-"""Bisections of the distance to the middle of the table: 7 give 1 %."""
+_HALVES = 7  # bisections of the distance to the middle of the table: 7 give 1 %
 
 
 @dataclass(frozen=True, eq=False)
 class Fault:
-    """A body at an impossible place.
-
-    Attributes:
-        words: What is wrong, with the distance.
-        way: Displacement that frees a clamp, (3,), mm, in the frame of the face.
-    """
+    """A body at an impossible place."""
 
     key: str
     found: object
-    words: str
+    words: str  # what is wrong, with the distance
+    # displacement that frees a clamp, (3,), mm, in the frame of the face
     way: Array = field(default_factory=lambda: np.zeros(3))
 
 

@@ -47,17 +47,11 @@ def untouchable_faces(reach: ProbeReach, made: Standard, poses: Array) -> list[s
 
 @dataclass(frozen=True, eq=False)
 class ProbeAccess:
-    """Access of the probe to F faces.
+    """Access of the probe to F faces."""
 
-    Attributes:
-        reached: Whether a touch is within angle and travels, (F,).
-        alone: Whether such a touch clears plate, balls and the own pillar, (F,).
-        beside: Whether two faces leave each other at least half of such touches, (F, F).
-    """
-
-    reached: Which
-    alone: Which
-    beside: Which
+    reached: Which  # whether a touch is within angle and travels, (F,)
+    alone: Which  # whether such a touch clears plate, balls and the own pillar, (F,)
+    beside: Which  # whether two faces leave each other at least half of such touches, (F, F)
 
 
 def mutually_probeable(

@@ -19,29 +19,19 @@ from matstd.twin.units import DEG
 TURN_STEP = 10.0 * DEG
 """Distance of the readings that are looked at: at 200 mm from the axis 17 mm, less than a clamp."""
 
-TURN_PLACES = 5
-"""Readings of a linear axis between a body and the table that are looked at."""
-
-ROUGH, FINE = 24, 256
-"""Sides of the polygon round a disc: first, and where it decides."""
+TURN_PLACES = 5  # readings of a linear axis between a body and the table that are looked at
+ROUGH, FINE = 24, 256  # sides of the polygon round a disc: first, and where it decides
 
 
 @dataclass(frozen=True, eq=False)
 class Meeting:
-    """The pose at which a body reaches deepest into what turns.
+    """The pose at which a body reaches deepest into what turns."""
 
-    Attributes:
-        number: Of the body in the file.
-        met: What it meets: `the base of the standard` or `the table`.
-        pose: Readings of the axes between body and table, mm and rad, by name.
-        depth: Shortest way by which it would leave the other, mm.
-    """
-
-    number: int
+    number: int  # of the body in the file
     body: Body
-    met: str
-    pose: dict[str, float]
-    depth: float
+    met: str  # what it meets: `the base of the standard` or `the table`
+    pose: dict[str, float]  # readings of the axes between body and table, mm and rad, by name
+    depth: float  # shortest way by which it would leave the other, mm
 
 
 def between(brief: Brief, body: Body) -> list[str]:

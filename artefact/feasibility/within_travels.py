@@ -55,35 +55,23 @@ TRIED_CHANGES = "place or turn of the set-up, length of the probe or range of a 
 
 @dataclass(frozen=True, eq=False)
 class Wish:
-    """A change of the project with the machine and limits that follow from it.
-
-    Attributes:
-        size: Orders the changes of one kind.
-        kind: What is changed; one change per kind is named.
-        rotary: Limits of the rotary axes, (R, 2), rad.
-    """
+    """A change of the project with the machine and limits that follow from it."""
 
     words: str
-    size: float
-    kind: str
+    size: float  # orders the changes of one kind
+    kind: str  # what is changed; one change per kind is named
     reach: ProbeReach
-    rotary: Array
+    rotary: Array  # limits of the rotary axes, (R, 2), rad
 
 
 @dataclass(frozen=True, eq=False)
 class Travels:
-    """The part of a blank that the machine reaches.
+    """The part of a blank that the machine reaches."""
 
-    Attributes:
-        tried: Places, table poses, and the distances beyond the limits.
-        poses: Candidate table poses, (K, R), rad, at which Z can rise above the standard.
-        against: Binding limit, in words; empty where enough is reached.
-        wish: Change of a body that brings enough within reach, in words; empty where none binds.
-    """
-
-    tried: PlacesInReach
-    poses: Array
-    against: str = ""
+    tried: PlacesInReach  # places, table poses, and the distances beyond the limits
+    poses: Array  # candidate table poses, (K, R), rad, at which Z can rise above the standard
+    against: str = ""  # binding limit, in words; empty where enough is reached
+    # change of a body that brings enough within reach, in words; empty where none binds
     wish: str = ""
 
 

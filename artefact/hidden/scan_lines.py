@@ -22,27 +22,18 @@ from matstd.twin.sampling import grid_points
 from matstd.twin.units import UM
 
 _STRETCH = 8.0  # mm of line in one mean: less than half of the narrowest effect that is asked for
-EDGE = 3.0
-"""Distance of lines from the trimmed edge, mm."""
+EDGE = 3.0  # distance of lines from the trimmed edge, mm
 
 
 @dataclass(frozen=True)
 class Scan:
-    """How a face is scanned.
+    """How a face is scanned."""
 
-    Attributes:
-        between: Distance of two lines, mm.
-        pitch: Distance of two recorded points on a line, mm.
-        u: Standard uncertainty of a point by its noise, mm.
-        memory: Distance over which that noise falls to 1/e, mm.
-        feed: Mm/min.
-    """
-
-    between: float = 5.0
-    pitch: float = 2.5
-    u: float = 2.0 * UM
-    memory: float = 1.0
-    feed: float = 1000.0
+    between: float = 5.0  # distance of two lines, mm
+    pitch: float = 2.5  # distance of two recorded points on a line, mm
+    u: float = 2.0 * UM  # standard uncertainty of a point by its noise, mm
+    memory: float = 1.0  # distance over which that noise falls to 1/e, mm
+    feed: float = 1000.0  # mm/min
 
     @property
     def u_of_mean(self) -> float:

@@ -34,8 +34,7 @@ nut of a ball screw averages over."""
 SIZE = 2.0 * UM
 """Root mean square of an effect over the volume of the standard, mm."""
 
-FALSE_FINDING = 0.05
-"""Probability of finding one where there is none."""
+FALSE_FINDING = 0.05  # probability of finding one where there is none
 
 FORM_LENGTH = 6.0
 """Distance over which form errors of a calibrated face remain alike, mm: pitch of its points."""
@@ -47,16 +46,11 @@ _LEFT_OUT = 1e-2  # share of the variance of a field that its factor may leave o
 
 @dataclass(frozen=True, eq=False)
 class Measurement:
-    """Touches and points of scans as they will be measured.
-
-    Attributes:
-        u: Standard uncertainty of every row by its noise alone, (N,), mm.
-        memory: Correlation of its noise with that of the row before, (N,); 0 for touches.
-    """
+    """Touches and points of scans as they will be measured."""
 
     touches: Requests
-    u: Array
-    memory: Array
+    u: Array  # standard uncertainty of every row by its noise alone, (N,), mm
+    memory: Array  # correlation of its noise with that of the row before, (N,); 0 for touches
 
     def __len__(self) -> int:
         return len(self.touches)
@@ -78,33 +72,23 @@ def measured_together(parts: Sequence[Measurement]) -> Measurement:
 
 @dataclass(frozen=True)
 class HiddenEffect:
-    """Effects of one kind that a machine may have.
+    """Effects of one kind that a machine may have."""
 
-    Attributes:
-        is_bump: Whether it is a short error of one axis, whichever; else a field over all of them.
-        width: Full width at half of the height, mm.
-        direction: Linear axis along which it displaces the tool.
-    """
-
+    # whether it is a short error of one axis, whichever; else a field over all of them
     is_bump: bool
-    width: float
-    direction: str
+    width: float  # full width at half of the height, mm
+    direction: str  # linear axis along which it displaces the tool
 
 
 @dataclass(frozen=True, eq=False)
 class HiddenPower:
-    """How surely some measurements show hidden effects.
+    """How surely some measurements show hidden effects."""
 
-    Attributes:
-        effects: Kinds of effects, K of them.
-        signal: Root of the mean noncentrality of each, (K,): in how many standard deviations it
-            would show to a test that knew it.
-        power: Probability of detection by the test of smooth fields, at a risk of `FALSE_FINDING`,
-            (K,).
-    """
-
-    effects: tuple[HiddenEffect, ...]
+    effects: tuple[HiddenEffect, ...]  # kinds of effects, K of them
+    # root of the mean noncentrality of each, (K,): in how many standard deviations it would show to
+    # a test that knew it
     signal: Array
+    # probability of detection by the test of smooth fields, at a risk of `FALSE_FINDING`, (K,)
     power: Array
 
     @property

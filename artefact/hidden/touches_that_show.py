@@ -67,23 +67,14 @@ def showing_touches(
 
 @dataclass(eq=False)
 class _Choice:
-    """What given and chosen touches show, and what every other would add.
+    """What given and chosen touches show, and what every other would add."""
 
-    Attributes:
-        first: First column of every effect, (E,).
-        square: Squares of the signals, (E,).
-        left: Deviations at the possible touches that nothing explains, (N, M).
-        explained: Of the possible touches, (N, B).
-        weighed: The same times the covariance of what is explained, (N, B).
-        leverage: ``h``, (N,).
-    """
-
-    first: IntArray
-    square: Array
-    left: Array
-    explained: Array
-    weighed: Array
-    leverage: Array
+    first: IntArray  # first column of every effect, (E,)
+    square: Array  # squares of the signals, (E,)
+    left: Array  # deviations at the possible touches that nothing explains, (N, M)
+    explained: Array  # of the possible touches, (N, B)
+    weighed: Array  # the same times the covariance of what is explained, (N, B)
+    leverage: Array  # ``h``, (N,)
 
     @staticmethod
     def begun(

@@ -40,9 +40,7 @@ POST_STIFFNESS = 18.0 / UM
 DEFAULT_MODULUS = 70e3
 """Modulus for posts of an unknown material, N/mm^2: aluminium, the softest usual material."""
 
-TABLE_RIM = 8.0
-"""Smallest distance from the rim of a screw hole to that of the table, mm."""
-
+TABLE_RIM = 8.0  # smallest distance from the rim of a screw hole to that of the table, mm
 _FACES_SHARE = 0.17  # of the base covered by all freeform faces: with more, 13 balls do not fit
 _SIZES = (0.7, 1.2)  # sides of a face relative to equal squares
 _MAX_HALF_SIDE = 32.0  # half side of a face, mm

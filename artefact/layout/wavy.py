@@ -29,25 +29,15 @@ _LOWEST = 10.0  # mm between base and the lowest valley: fillet, and room for th
 
 @dataclass(frozen=True)
 class Wave:
-    """Shape and place of a wavy face.
+    """Shape and place of a wavy face."""
 
-    Attributes:
-        middle: Of the face on the base, mm.
-        half_size: Half sides, mm.
-        wavelength: Mm.
-        slope: Largest angle to its plane, rad; less where another limit binds first.
-        flatness: c of its flanks, 0 to below 1.
-        turn: Of the two directions of the waves against x and y, rad.
-        phase: Of the two waves at the middle, rad.
-    """
-
-    middle: tuple[float, float]
-    half_size: tuple[float, float]
-    wavelength: float
-    slope: float
-    flatness: float = 0.0
-    turn: float = 45.0 * DEG
-    phase: tuple[float, float] = (0.0, 0.0)
+    middle: tuple[float, float]  # of the face on the base, mm
+    half_size: tuple[float, float]  # half sides, mm
+    wavelength: float  # mm
+    slope: float  # largest angle to its plane, rad; less where another limit binds first
+    flatness: float = 0.0  # c of its flanks, 0 to below 1
+    turn: float = 45.0 * DEG  # of the two directions of the waves against x and y, rad
+    phase: tuple[float, float] = (0.0, 0.0)  # of the two waves at the middle, rad
 
 
 def wavy_face(name: str, blank: Blank, wave: Wave) -> FreeformPatch:

@@ -46,31 +46,20 @@ Which = NDArray[np.bool_]
 
 @dataclass(frozen=True, eq=False)
 class _FacePool:
-    """Candidate faces beside some balls, named by their numbers: F.
-
-    Attributes:
-        fits: Which of them fit beside each other, (F, F).
-        hides: Share of the touches on the balls that each face obstructs, (F,).
-        poses: Table poses of these touches, (K, R), rad.
-    """
+    """Candidate faces beside some balls, named by their numbers: F."""
 
     faces: list[FreeformPatch]
-    fits: Which
-    hides: Array
-    poses: Array
+    fits: Which  # which of them fit beside each other, (F, F)
+    hides: Array  # share of the touches on the balls that each face obstructs, (F,)
+    poses: Array  # table poses of these touches, (K, R), rad
 
 
 @dataclass(frozen=True)
 class _Demands:
-    """Requirements on faces that are added after a body was refused for lack of them.
+    """Requirements on faces that are added after a body was refused for lack of them."""
 
-    Attributes:
-        light: Faces keep the standard within its mass limit.
-        seen: Faces can be probed beside each other.
-    """
-
-    light: bool = False
-    seen: bool = False
+    light: bool = False  # faces keep the standard within its mass limit
+    seen: bool = False  # faces can be probed beside each other
 
     def fewer(self, balls: list[DatumSphere]) -> list[DatumSphere]:
         """The balls without the last one, or half of them where each trial takes seconds."""
@@ -94,21 +83,14 @@ _POSES = 20  # table poses for touches on faces
 
 @dataclass(frozen=True, eq=False)
 class BodyChoice:
-    """Candidates and criterion of the choice of bodies.
+    """Candidates and criterion of the choice of bodies."""
 
-    Attributes:
-        criterion: What faces are chosen for, without potential terms.
-        tried: Number of random faces beside each choice of balls.
-        room: Faces and balls that are known to fit side by side.
-        from_side: Whether the probe approaches from the side at every table pose.
-    """
-
-    criterion: Criterion
+    criterion: Criterion  # what faces are chosen for, without potential terms
     blank: Blank
-    tried: int
+    tried: int  # number of random faces beside each choice of balls
     rng: np.random.Generator
-    room: Room
-    from_side: bool
+    room: Room  # faces and balls that are known to fit side by side
+    from_side: bool  # whether the probe approaches from the side at every table pose
 
     def standard(
         self,

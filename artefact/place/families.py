@@ -56,22 +56,16 @@ class Built:
 
 @dataclass(frozen=True, eq=False)
 class Site:
-    """What all families of one design share: candidates, criterion, rivals.
-
-    Attributes:
-        bodies: Candidate small faces; None where none is wanted or none fits.
-        all_poses: Candidate table poses, (K, R), rad.
-        effects_at: Where bumps may be, readings of the linear axes, (K, 3), mm.
-    """
+    """What all families of one design share: candidates, criterion, rivals."""
 
     brief: Brief
     criterion: Criterion
     places: BallPlaces
-    bodies: BodyChoice | None
+    bodies: BodyChoice | None  # candidate small faces; None where none is wanted or none fits
     rivals: tuple[Rival, ...]
     bases: list[Base]
-    all_poses: Array
-    effects_at: Array
+    all_poses: Array  # candidate table poses, (K, R), rad
+    effects_at: Array  # where bumps may be, readings of the linear axes, (K, 3), mm
 
     @property
     def options(self) -> PlacementOptions:

@@ -36,8 +36,7 @@ class Family(StrEnum):
 MOST_COST = 1.02
 """Largest error over the workspace that a family may leave, relative to the best balls alone."""
 
-PACE = 3.6
-"""Seconds a touch, with its share of the ways: 2.4 to 4.8 as planned for the examples."""
+PACE = 3.6  # seconds a touch, with its share of the ways: 2.4 to 4.8 as planned for the examples
 
 CLEAR_LEAD = 1.05
 """Figure of balls alone, relative to the best family with a face, above which they are built."""
@@ -45,32 +44,22 @@ CLEAR_LEAD = 1.05
 
 @dataclass(frozen=True)
 class FamilyFigures:
-    """What one family would give on this machine.
-
-    Attributes:
-        rms_user: Error of the tool point over the workspace that its touches leave unknown, mm.
-        worst_user: The same at the worst pose, mm.
-        signal: Of the unmodelled effect that it shows least.
-        power: Probability that this effect is detected.
-        least: That effect in words of its record: field or bump, width, direction.
-        touches: Number of them, those of the proof included.
-        scan_minutes: Time of the scan at its feed, min.
-        price: Of the cheaper construction, EUR; None for a material without rates.
-        scan_points: Recorded points of its scan; 0 where it is touched only.
-        refused: Why it cannot be built here; empty where it can.
-    """
+    """What one family would give on this machine."""
 
     family: Family
+    # error of the tool point over the workspace that its touches leave unknown, mm
     rms_user: float = 0.0
-    worst_user: float = 0.0
-    signal: float = 0.0
-    power: float = 0.0
+    worst_user: float = 0.0  # the same at the worst pose, mm
+    signal: float = 0.0  # of the unmodelled effect that it shows least
+    power: float = 0.0  # probability that this effect is detected
+    # that effect in words of its record: field or bump, width, direction
     least: tuple[bool, float, str] = (False, 0.0, "")
-    touches: int = 0
-    scan_minutes: float = 0.0
+    touches: int = 0  # number of them, those of the proof included
+    scan_minutes: float = 0.0  # time of the scan at its feed, min
+    # of the cheaper construction, EUR; None for a material without rates
     price: Estimate | None = None
-    scan_points: int = 0
-    refused: str = ""
+    scan_points: int = 0  # recorded points of its scan; 0 where it is touched only
+    refused: str = ""  # why it cannot be built here; empty where it can
 
 
 def chosen_family(figures: tuple[FamilyFigures, ...], goal: Goal, best_balls: float) -> Family:

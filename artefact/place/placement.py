@@ -58,44 +58,33 @@ _MIN_FREE_TOUCHES = 480  # smallest number of free touches that decide which eff
 
 @dataclass(frozen=True, eq=False)
 class Placement:
-    """A standard and the touches it was designed for.
+    """A standard and the touches it was designed for."""
 
-    Attributes:
-        standard: Checked against every limit; every patch names the errors that it reveals.
-        requests: The touches that identify, all on balls.
-        proof: The touches that prove, on faces or on balls of their own, at the same table poses.
-        criterion: That chose them, on no body.
-        prior_rms: Expected deviation of the tool point before any touch, rms, mm: over the probed
-            volume, over the user's workspace.
-        rivals: This standard first, then other artefacts at as many identifying touches.
-        certificate: How near the identifying touches are to the best choice among all possible ones
-            at these table poses and quotas.
-        power: Of the proving touches to detect a wrong model along normals with the slopes of the
-            faces, anywhere in the probed volume.
-        power_in_volume: The same for errors in any direction.
-        power_of_balls: Of as many further touches on the balls, which are no proof: errors of a
-            ball went into the model.
-        power_exact: As `power`, with exactly known positions of the faces.
-        family: Features that prove.
-        families: Figures of every family that was tried.
-        goal: What decided between them.
-        unreachable: Artefacts that are not compared: too few touches are possible on them.
-    """
-
-    standard: Standard
-    requests: Requests
+    standard: Standard  # checked against every limit; every patch names the errors that it reveals
+    requests: Requests  # the touches that identify, all on balls
+    # the touches that prove, on faces or on balls of their own, at the same table poses
     proof: Requests
-    criterion: Criterion
+    criterion: Criterion  # that chose them, on no body
+    # expected deviation of the tool point before any touch, rms, mm: over the probed volume, over
+    # the user's workspace
     prior_rms: tuple[float, float]
+    # this standard first, then other artefacts at as many identifying touches
     rivals: tuple[Rival, ...]
+    # how near the identifying touches are to the best choice among all possible ones at these table
+    # poses and quotas
     certificate: Certificate
+    # of the proving touches to detect a wrong model along normals with the slopes of the faces,
+    # anywhere in the probed volume
     power: Power
-    power_in_volume: Power
+    power_in_volume: Power  # the same for errors in any direction
+    # of as many further touches on the balls, which are no proof: errors of a ball went into the
+    # model
     power_of_balls: Power
-    power_exact: Power
-    family: Family = Family.FACES
-    families: tuple[FamilyFigures, ...] = ()
-    goal: Goal = "prove"
+    power_exact: Power  # as `power`, with exactly known positions of the faces
+    family: Family = Family.FACES  # features that prove
+    families: tuple[FamilyFigures, ...] = ()  # figures of every family that was tried
+    goal: Goal = "prove"  # what decided between them
+    # artefacts that are not compared: too few touches are possible on them
     unreachable: tuple[str, ...] = ()
 
     @property

@@ -53,9 +53,7 @@ _LEAST_HALF = 40.0  # mm, of a face that is worth its block
 _WAVELENGTHS, _FLATNESS = (45.0, 60.0, 80.0), (0.0, 0.9)
 _TURNS = (0.0, 22.5 * DEG)  # against x, tried for the best wave, which is turned by 45 degrees
 _SOME = 3  # every third identifying touch stands for all while waves are compared
-
-PROOF_POSES = 6
-"""Table poses of the touches on the face."""
+PROOF_POSES = 6  # table poses of the touches on the face
 
 
 def wavy_choice(

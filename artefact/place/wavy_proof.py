@@ -22,9 +22,7 @@ from matstd.twin.record import IntArray
 AREA = 40.0
 """Side of the squares of a face that get equal shares, mm: the width of the widest effect."""
 
-PLACES_PER_TOUCH = 4.0
-"""Places on a wavy face from which each touch is chosen."""
-
+PLACES_PER_TOUCH = 4.0  # places on a wavy face from which each touch is chosen
 _SCAN_POSES = 3  # table poses at which a face is scanned, where the machine has several
 _MOST_TRIED = 3000  # possible touches that are compared: 2 s for 150 of them
 

@@ -34,22 +34,14 @@ class Construction(StrEnum):
 
 @dataclass(frozen=True)
 class Price:
-    """Estimates of one construction.
-
-    Attributes:
-        stock: Mass of what is bought to be milled, kg.
-        hours: By kind of work, h.
-        bought: By what is bought or given out, EUR.
-        labour: All hours at their rates, EUR.
-        weeks: From order to certificate.
-    """
+    """Estimates of one construction."""
 
     construction: Construction
-    stock: float
-    hours: dict[str, Estimate]
-    bought: dict[str, Estimate]
-    labour: Estimate
-    weeks: Estimate
+    stock: float  # mass of what is bought to be milled, kg
+    hours: dict[str, Estimate]  # by kind of work, h
+    bought: dict[str, Estimate]  # by what is bought or given out, EUR
+    labour: Estimate  # all hours at their rates, EUR
+    weeks: Estimate  # from order to certificate
 
     @property
     def total(self) -> Estimate:

@@ -50,8 +50,7 @@ MILLING, TURNING, GRINDING, BENCH = (
 )
 """Rates of five-axis milling, turning, grinding and fitting, with their operator, per h."""
 
-MEASURING = _between(90.0, 160.0)
-"""Rate of a coordinate measuring machine, per h."""
+MEASURING = _between(90.0, 160.0)  # rate of a coordinate measuring machine, per h
 
 POWER, IN_CUT = _between(3.0, 6.0), _between(0.3, 0.6)
 """Power at a roughing cutter, kW; share of the time of roughing in which it cuts."""
@@ -88,8 +87,7 @@ MEASURED_SET_UP, MEASURED_BALL, MEASURED_FACE = (
 )
 """Calibration: alignment and report, a ball, a face with its dense lines, h."""
 
-HOURS_A_WEEK = _between(15.0, 35.0)
-"""Hours of a week in which a workshop works on one piece."""
+HOURS_A_WEEK = _between(15.0, 35.0)  # hours of a week in which a workshop works on one piece
 
 MATERIAL_WEEKS, HARDENING_WEEKS, CALIBRATION_WEEKS = (
     _between(1.0, 3.0),

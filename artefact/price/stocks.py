@@ -7,18 +7,13 @@ from matstd.artefact.price.rates import Estimate
 
 @dataclass(frozen=True, slots=True)
 class Stock:
-    """A material as it is bought.
+    """A material as it is bought."""
 
-    Attributes:
-        price: Of a sawn block, per kg.
-        force: Specific cutting force in roughing, N/mm^2 (kc1 of tables for chips of 0.1 to
-            0.2 mm, new and worn cutter).
-        is_hardened: Whether it is hardened after roughing.
-    """
-
-    price: Estimate
+    price: Estimate  # of a sawn block, per kg
+    # specific cutting force in roughing, N/mm^2 (kc1 of tables for chips of 0.1 to 0.2 mm, new and
+    # worn cutter)
     force: Estimate
-    is_hardened: bool = False
+    is_hardened: bool = False  # whether it is hardened after roughing
 
 
 _between = Estimate.between

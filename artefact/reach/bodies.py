@@ -13,27 +13,19 @@ from matstd.twin.record import Setup
 
 @dataclass(frozen=True, eq=False)
 class Body:
-    """A clamp, fixture or cover, in the frame of the table's face.
-
-    Attributes:
-        at: Middle of its lower side, or origin of its mesh, mm.
-        half_size: Half sides of its outline, mm; of a disc its radius, twice.
-        height: Of a prism, mm.
-        turn: About its own upright axis, rad.
-        on: Axis whose body carries it; empty for the table.
-        setup: Name of the set-up in which it stands there; empty for all.
-        drawn: Its mesh, which stands in place of the prism; None for a prism.
-    """
+    """A clamp, fixture or cover, in the frame of the table's face."""
 
     name: str
+    # middle of its lower side, or origin of its mesh, mm
     at: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    # half sides of its outline, mm; of a disc its radius, twice
     half_size: tuple[float, float] = (0.0, 0.0)
     is_disc: bool = False
-    height: float = 0.0
-    turn: float = 0.0
-    on: str = ""
-    setup: str = ""
-    drawn: DrawnBody | None = None
+    height: float = 0.0  # of a prism, mm
+    turn: float = 0.0  # about its own upright axis, rad
+    on: str = ""  # axis whose body carries it; empty for the table
+    setup: str = ""  # name of the set-up in which it stands there; empty for all
+    drawn: DrawnBody | None = None  # its mesh, which stands in place of the prism; None for a prism
 
     @cached_property
     def solids(self) -> tuple[Solid, ...]:

@@ -13,33 +13,21 @@ from matstd.artefact.reach.face_of_table import table_face
 from matstd.twin.errors import DesignError
 from matstd.twin.frames import Array, apply, inverse
 
-DATUM = "DATUM"
-"""Name of the feature."""
-
+DATUM = "DATUM"  # name of the feature
 _UPRIGHT = 1e-6  # of the standard's z against that of the table's face
 
 
 @dataclass(frozen=True)
 class DatumBall:
-    """The ball, in the frame of the table's face.
+    """The ball, in the frame of the table's face."""
 
-    Attributes:
-        x: Of its centre, mm.
-        y: Of its centre, mm.
-        z: Of its centre above the origin of the frame, mm.
-        radius: As calibrated, mm.
-        stem: Radius of its stem, mm.
-        low: Height of the table's face, where the stem begins, mm.
-        u: Standard uncertainty of the radius, mm.
-    """
-
-    x: float
-    y: float
-    z: float
-    radius: float
-    stem: float
-    low: float = 0.0
-    u: float = 0.0
+    x: float  # of its centre, mm
+    y: float  # of its centre, mm
+    z: float  # of its centre above the origin of the frame, mm
+    radius: float  # as calibrated, mm
+    stem: float  # radius of its stem, mm
+    low: float = 0.0  # height of the table's face, where the stem begins, mm
+    u: float = 0.0  # standard uncertainty of the radius, mm
 
     def sphere(self, T_table_artefact: Array) -> DatumSphere:
         """The ball as a feature of a standard that stands somewhere.

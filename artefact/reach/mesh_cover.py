@@ -9,26 +9,18 @@ from matstd.artefact.reach.workshop import Solid
 from matstd.twin.errors import BadFile
 from matstd.twin.frames import Array
 
-MOST_BOXES = 24
-"""Of one mesh: two lines of a program's head each."""
-
+MOST_BOXES = 24  # of one mesh: two lines of a program's head each
 _SMALLEST_CUT = 4.0  # mm: a box with no side longer is not cut any further
 _MIN_FILL = 0.85  # of a box filled by its two halves: no cut would take much off it
 
 
 @dataclass(frozen=True, eq=False)
 class DrawnBody:
-    """A body from a mesh file: read once, wherever it stands.
+    """A body from a mesh file: read once, wherever it stands."""
 
-    Attributes:
-        boxes: Lowest and highest corners of boxes that hold its surface, (B, 2, 3), mm.
-        corners: Of its triangles, (V, 3), mm.
-        triangles: Corners of each, (F, 3); none where the mesh encloses no volume.
-    """
-
-    boxes: Array
-    corners: Array
-    triangles: np.ndarray
+    boxes: Array  # lowest and highest corners of boxes that hold its surface, (B, 2, 3), mm
+    corners: Array  # of its triangles, (V, 3), mm
+    triangles: np.ndarray  # corners of each, (F, 3); none where the mesh encloses no volume
 
     def solids(self, name: str, T_face_mesh: Array, on: str = "") -> tuple[Solid, ...]:
         """Its boxes, numbered, as upright bodies.

@@ -19,15 +19,11 @@ _PIECES = 6  # short cylinders in which the balls of a probe are gathered
 
 @dataclass(frozen=True, slots=True)
 class ProbeShape:
-    """A touch probe as cylinders round the tool axis, from the ball centre upwards.
+    """A touch probe as cylinders round the tool axis, from the ball centre upwards."""
 
-    Attributes:
-        ball_radius: Of the stylus tip, mm.
-        cylinders: (end, radius) of each, mm from the ball centre, in ascending order; the first
-            begins at the ball.
-    """
-
-    ball_radius: float
+    ball_radius: float  # of the stylus tip, mm
+    # (end, radius) of each, mm from the ball centre, in ascending order; the first begins at the
+    # ball
     cylinders: tuple[tuple[float, float], ...]
 
     def __post_init__(self) -> None:
@@ -117,16 +113,12 @@ def _wrap(low: float, high: float, radius: float) -> tuple[Array, Array]:
 
 @dataclass(frozen=True, eq=False)
 class Clearance:
-    """Room at N touches.
+    """Room at N touches."""
 
-    Attributes:
-        distance: Of the probe above its ball from the standard, (N,), mm; never too large,
-            negative where they may collide, and then not a depth.
-        body: Name of the body that is nearest, (N,).
-    """
-
+    # of the probe above its ball from the standard, (N,), mm; never too large, negative where they
+    # may collide, and then not a depth
     distance: Array
-    body: np.ndarray
+    body: np.ndarray  # name of the body that is nearest, (N,)
 
 
 def clearance(

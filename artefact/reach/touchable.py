@@ -36,19 +36,12 @@ ROUNDING = (
 
 @dataclass(frozen=True, eq=False)
 class Requests:
-    """Wanted touches, in any order.
+    """Wanted touches, in any order."""
 
-    Attributes:
-        feature: Names of features, (N,).
-        point: Contact points, artefact frame, (N, 3), mm.
-        normal: Outward unit normals there, (N, 3).
-        rotary: Readings of the rotary axes in chain order, (N, R), rad.
-    """
-
-    feature: Labels
-    point: Array
-    normal: Array
-    rotary: Array
+    feature: Labels  # names of features, (N,)
+    point: Array  # contact points, artefact frame, (N, 3), mm
+    normal: Array  # outward unit normals there, (N, 3)
+    rotary: Array  # readings of the rotary axes in chain order, (N, R), rad
 
     def __len__(self) -> int:
         return len(self.point)
@@ -71,24 +64,16 @@ def joined(parts: list[Requests]) -> Requests:
 
 @dataclass(frozen=True, eq=False)
 class ProbeReach:
-    """Machine, probe and place of the standard, with the room that a touch is given.
-
-    Attributes:
-        length: Gauge point to ball centre, mm.
-        steepest: Largest angle between a surface's normal and the tool axis, rad.
-        room: Smallest gap between the probe above its ball and anything solid, mm.
-        standoff: Gap between ball and surface at the start of a touch, mm.
-        search: How far beyond the expected contact the travel must reach, mm.
-    """
+    """Machine, probe and place of the standard, with the room that a touch is given."""
 
     chain: Chain
     setup: Setup
     shape: ProbeShape
-    length: float
-    steepest: float = 75.0 * DEG
-    room: float = 2.0
-    standoff: float = 5.0
-    search: float = 3.0
+    length: float  # gauge point to ball centre, mm
+    steepest: float = 75.0 * DEG  # largest angle between a surface's normal and the tool axis, rad
+    room: float = 2.0  # smallest gap between the probe above its ball and anything solid, mm
+    standoff: float = 5.0  # gap between ball and surface at the start of a touch, mm
+    search: float = 3.0  # how far beyond the expected contact the travel must reach, mm
     workshop: Workshop = field(default_factory=Workshop)
 
     @property
@@ -340,20 +325,11 @@ def _met(what: Meeting, name: str) -> str:
 
 @dataclass(frozen=True, eq=False)
 class _PoseKinematics:
-    """K table poses that N touches are made at.
+    """K table poses that N touches are made at."""
 
-    Attributes:
-        index: Pose of every touch, (N,).
-        q: Readings that bring the tip to one point, (K, A).
-        tip: That point, table frame, (K, 3), mm.
-        inverse: Linear readings per motion of the tip, (K, 3, 3).
-        T_table_tool: Pose of the tool, of which only the rotation depends on the pose alone.
-        along: Motion of the tip per unit of each linear axis, (K, 3, 3).
-    """
-
-    index: IntArray
-    q: Array
-    tip: Array
-    inverse: Array
-    T_table_tool: Array
-    along: Array
+    index: IntArray  # pose of every touch, (N,)
+    q: Array  # readings that bring the tip to one point, (K, A)
+    tip: Array  # that point, table frame, (K, 3), mm
+    inverse: Array  # linear readings per motion of the tip, (K, 3, 3)
+    T_table_tool: Array  # pose of the tool, of which only the rotation depends on the pose alone
+    along: Array  # motion of the tip per unit of each linear axis, (K, 3, 3)

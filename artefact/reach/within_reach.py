@@ -18,9 +18,7 @@ from matstd.twin.units import DEG
 ANGLE = "angle"
 """Name of the limit that is no travel: between a surface's normal and the tool axis."""
 
-PLACES = 240
-"""Tried on a blank."""
-
+PLACES = 240  # tried on a blank
 _LOWEST, _HIGHEST = 20.0, 0.7  # of a touch: mm above the base, and share of the blank's height
 _TILT = 90.0 * DEG  # of a touch from the standard's z: balls are touched down to their equators
 _MM_PER_RAD = 5.0 / DEG  # mm of travel that weigh as much as an angle where both are in the way
@@ -28,36 +26,22 @@ _MM_PER_RAD = 5.0 / DEG  # mm of travel that weigh as much as an angle where bot
 
 @dataclass(frozen=True, eq=False)
 class Limit:
-    """One end of a travel, or the angle.
+    """One end of a travel, or the angle."""
 
-    Attributes:
-        name: Of the axis, or `ANGLE`.
-        at: Where it ends, mm or rad.
-        upper: Whether readings beyond are larger.
-    """
-
-    name: str
-    at: float
-    upper: bool = True
+    name: str  # of the axis, or `ANGLE`
+    at: float  # where it ends, mm or rad
+    upper: bool = True  # whether readings beyond are larger
 
 
 @dataclass(frozen=True, eq=False)
 class PlacesInReach:
-    """Places on a blank, table poses, and how far each touch is beyond each limit.
+    """Places on a blank, table poses, and how far each touch is beyond each limit."""
 
-    Attributes:
-        point: Places, artefact frame, (N, 3), mm.
-        normal: Outward normals there, (N, 3).
-        poses: Rotary readings, (K, R), rad.
-        limits: Ends of the travels of the linear axes, and the angle, L of them.
-        beyond: How far each touch is beyond each limit, (N, K, L), mm and rad; zero within.
-    """
-
-    point: Array
-    normal: Array
-    poses: Array
-    limits: tuple[Limit, ...]
-    beyond: Array
+    point: Array  # places, artefact frame, (N, 3), mm
+    normal: Array  # outward normals there, (N, 3)
+    poses: Array  # rotary readings, (K, R), rad
+    limits: tuple[Limit, ...]  # ends of the travels of the linear axes, and the angle, L of them
+    beyond: Array  # how far each touch is beyond each limit, (N, K, L), mm and rad; zero within
 
     @property
     def reached(self) -> Mask:

@@ -19,36 +19,24 @@ from matstd.twin.machine import Chain, table_to_tool
 
 TABLE = "the table"
 
-TABLE_RADIUS = 160.0
-"""Of the rotary table's face where none is stated, mm."""
-
-TABLE_THICKNESS = 60.0
-"""How much of the table below its face is kept clear, mm."""
+TABLE_RADIUS = 160.0  # of the rotary table's face where none is stated, mm
+TABLE_THICKNESS = 60.0  # how much of the table below its face is kept clear, mm
 
 
 @dataclass(frozen=True)
 class Solid:
-    """One body, in the frame of the table's face: at the table's origin, z out of the face.
-
-    Attributes:
-        half_size: Half sides of its outline, mm; of a disc its radius, twice.
-        low: Height of its lower face, mm.
-        high: Height of its upper face, mm.
-        x: Of its middle, mm.
-        y: Of its middle, mm.
-        turn: About its own upright axis, rad.
-        on: Axis whose body carries it; empty for the table. It stands where it does while every
-            axis between it and the table reads zero.
-    """
+    """One body, in the frame of the table's face: at the table's origin, z out of the face."""
 
     name: str
-    half_size: tuple[float, float]
+    half_size: tuple[float, float]  # half sides of its outline, mm; of a disc its radius, twice
     is_disc: bool = False
-    low: float = 0.0
-    high: float = 0.0
-    x: float = 0.0
-    y: float = 0.0
-    turn: float = 0.0
+    low: float = 0.0  # height of its lower face, mm
+    high: float = 0.0  # height of its upper face, mm
+    x: float = 0.0  # of its middle, mm
+    y: float = 0.0  # of its middle, mm
+    turn: float = 0.0  # about its own upright axis, rad
+    # axis whose body carries it; empty for the table. It stands where it does while every axis
+    # between it and the table reads zero
     on: str = ""
 
     def __post_init__(self) -> None:
@@ -98,15 +86,11 @@ def _ball_solids(ball: DatumBall) -> tuple[Solid, Solid]:
 
 @dataclass(frozen=True)
 class Workshop:
-    """Everything solid that is not the standard.
-
-    Attributes:
-        ball: By which the probe is watched; None where there is none.
-    """
+    """Everything solid that is not the standard."""
 
     table: Solid = field(default_factory=round_table)
     bodies: tuple[Solid, ...] = ()
-    ball: DatumBall | None = None
+    ball: DatumBall | None = None  # by which the probe is watched; None where there is none
 
     @property
     def on(self) -> tuple[str, ...]:

@@ -26,15 +26,10 @@ _ARC = 17  # corners of the hull on each rounded corner: 0.03 mm inside one of 2
 
 @dataclass(frozen=True, eq=False)
 class Overlap:
-    """How deep a body reaches into another.
+    """How deep a body reaches into another."""
 
-    Attributes:
-        depth: Shortest way by which it leaves the other, mm; 0 where they are apart.
-        aside: Shortest such way parallel to the face, (2,), mm.
-    """
-
-    depth: float
-    aside: Array
+    depth: float  # shortest way by which it leaves the other, mm; 0 where they are apart
+    aside: Array  # shortest such way parallel to the face, (2,), mm
 
 
 def base_corners(base: Base, T_table_artefact: Array) -> Array:

@@ -8,28 +8,21 @@ from matstd.artefact.reach import ProbeShape
 from matstd.twin.errors import DesignError
 from matstd.twin.frames import Array
 
-NOSE_HEIGHT = 150.0
-"""How much of the spindle above the gauge line is kept clear, mm."""
-
+NOSE_HEIGHT = 150.0  # how much of the spindle above the gauge line is kept clear, mm
 _BODY_RADIUS = 25.0  # mm; of optical probes 20 to 32
 
 
 @dataclass(frozen=True)
 class Probe:
-    """Probe with a ball stylus along the tool axis, mm.
-
-    Attributes:
-        length: From the spindle gauge point to the ball centre.
-        stack: (end, radius) of its cylinders from the ball centre up to the gauge point: stylus,
-            stem, body, holder. Where not given, a stylus of two thirds of the ball and half the
-            length, and a body of 50 mm.
-        nose_radius: Of the spindle nose above the gauge line.
-    """
+    """Probe with a ball stylus along the tool axis, mm."""
 
     radius: float = 3.0
-    length: float = 160.0
+    length: float = 160.0  # from the spindle gauge point to the ball centre
+    # (end, radius) of its cylinders from the ball centre up to the gauge point: stylus, stem, body,
+    # holder. Where not given, a stylus of two thirds of the ball and half the length, and a body of
+    # 50 mm
     stack: tuple[tuple[float, float], ...] = ()
-    nose_radius: float = 45.0
+    nose_radius: float = 45.0  # of the spindle nose above the gauge line
 
     def __post_init__(self) -> None:
         if not 0.0 < self.radius < self.length:

@@ -15,8 +15,7 @@ from matstd.twin.frames import Array
 from matstd.twin.machine import Family, parse_symbol
 from matstd.twin.model import Effect, Model, traits
 
-ERRORS_PER_PATCH = 4
-"""Errors named for a patch."""
+ERRORS_PER_PATCH = 4  # errors named for a patch
 
 
 def with_error_shares(criterion: Criterion, standard: Standard, requests: Requests) -> Standard:

@@ -29,21 +29,15 @@ _POSES = 20  # table poses, spread over the user's
 
 @dataclass(frozen=True, eq=False)
 class BallPlaces:
-    """Balls of which some are chosen.
-
-    Attributes:
-        W: Their rows, (N, R).
-        group: Ball of every row, (N,).
-        fits: Which of them stand beside each other, (B, B).
-    """
+    """Balls of which some are chosen."""
 
     balls: list[DatumSphere]
     criterion: Criterion
     blank: Blank
     touches: Requests
-    W: Array
-    group: IntArray
-    fits: NDArray[np.bool_]
+    W: Array  # their rows, (N, R)
+    group: IntArray  # ball of every row, (N,)
+    fits: NDArray[np.bool_]  # which of them stand beside each other, (B, B)
 
     def best(
         self, count: int, touches: int, clear: NDArray[np.bool_] | None = None

@@ -23,13 +23,9 @@ from matstd.twin.model import Effect, columns
 
 @dataclass(frozen=True, eq=False)
 class Visibility:
-    """Effects that touches with any points and normals could show.
+    """Effects that touches with any points and normals could show."""
 
-    Attributes:
-        effects: With a survival above `MIN_VISIBLE_SHARE` in the free touches.
-    """
-
-    effects: tuple[Effect, ...]
+    effects: tuple[Effect, ...]  # with a survival above `MIN_VISIBLE_SHARE` in the free touches
 
     def shown(self, criterion: Criterion, chosen: Requests) -> int:
         """How many of the effects some touches show."""

@@ -18,9 +18,7 @@ from matstd.twin.library import proposals
 from matstd.twin.model import Effect, columns, is_tunable
 from matstd.twin.record import Touches
 
-MIN_VISIBLE_SHARE = 0.3
-"""Share of the length of a signature that must survive the geometric model."""
-
+MIN_VISIBLE_SHARE = 0.3  # share of the length of a signature that must survive the geometric model
 _MIN_FREE_SURVIVAL = 0.1  # share that survives free touches, below which no design helps
 _OF_FEATURES = ("artefact-form",)  # belong to one feature of one artefact: nothing to compare
 _RANK_TOLERANCE = 1e-8  # relative singular value below which a direction is rounding
@@ -58,18 +56,12 @@ def residual_after(C: Array, W: Array) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Potential:
-    """Potential terms of a design.
-
-    Attributes:
-        names: Effect of every term, (Q,).
-        mix: Terms as combinations of the effects' columns, (C, Q).
-        imitation: What the model's rows imitate of them over free touches, (R, Q).
-    """
+    """Potential terms of a design."""
 
     effects: tuple[Effect, ...]
-    names: tuple[str, ...]
-    mix: Array
-    imitation: Array
+    names: tuple[str, ...]  # effect of every term, (Q,)
+    mix: Array  # terms as combinations of the effects' columns, (C, Q)
+    imitation: Array  # what the model's rows imitate of them over free touches, (R, Q)
 
     def __len__(self) -> int:
         return len(self.names)

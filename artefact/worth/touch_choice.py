@@ -51,16 +51,11 @@ _SPHERE_LOWEST = -5.0 * DEG  # elevation of the lowest touches on a datum sphere
 
 @dataclass(frozen=True)
 class TouchOptions:
-    """How many touches are chosen, at how many table poses.
+    """How many touches are chosen, at how many table poses."""
 
-    Attributes:
-        touches: Number of touches that identify.
-        proof: Number of touches that prove, on faces that identified nothing.
-    """
-
-    touches: int = 480
+    touches: int = 480  # number of touches that identify
     poses: int = 30
-    proof: int = 110
+    proof: int = 110  # number of touches that prove, on faces that identified nothing
 
 
 def poses_within(chain: Chain, rotary: Array, wanted: int) -> Array:

@@ -50,34 +50,24 @@ _ROWS_A_BLOCK = 4000  # of 71 columns: 2 MiB, held beside what is made of them
 
 @dataclass(frozen=True, eq=False)
 class Criterion:
-    """Worth of touches on a machine.
-
-    Attributes:
-        prior_sd: Their standard deviations with the set-up free, (P,).
-        noise: Standard deviation of one touch, mm.
-        rotary: Smallest and largest reading of every rotary axis, (R, 2), rad.
-        volume: Box that the standard fills, artefact frame, mm.
-        at_volume: Poses over the probed volume, M of them.
-        tip_volume: Deviation of the tip per unit of every parameter at them, (M, 3, P).
-        tip_user: The same at poses over the user's workspace, (M, 3, P).
-        objectives: What touches can be chosen for, by the names in `CRITERIA`.
-        potential: Effects that may be there or not, which touches shall show; None for none.
-        body: Whose features they are; None while there is none, so that none is uncertain.
-    """
+    """Worth of touches on a machine."""
 
     reach: ProbeReach
     model: Model
-    prior_sd: Array
-    noise: float
-    rotary: Array
-    volume: Box
-    at_volume: Touches
-    tip_volume: Array
-    tip_user: Array
+    prior_sd: Array  # their standard deviations with the set-up free, (P,)
+    noise: float  # standard deviation of one touch, mm
+    rotary: Array  # smallest and largest reading of every rotary axis, (R, 2), rad
+    volume: Box  # box that the standard fills, artefact frame, mm
+    at_volume: Touches  # poses over the probed volume, M of them
+    tip_volume: Array  # deviation of the tip per unit of every parameter at them, (M, 3, P)
+    tip_user: Array  # the same at poses over the user's workspace, (M, 3, P)
+    # what touches can be chosen for, by the names in `CRITERIA`
     objectives: Mapping[str, DesignCriterion]
     name: str = "I"
+    # effects that may be there or not, which touches shall show; None for none
     potential: Potential | None = None
     calibration: Calibration = field(default_factory=Calibration)
+    # whose features they are; None while there is none, so that none is uncertain
     body: Standard | None = None
 
     @property
@@ -148,24 +138,19 @@ class Criterion:
 
 @dataclass(frozen=True)
 class CriterionOptions:
-    """What touches are chosen for.
+    """What touches are chosen for."""
 
-    Attributes:
-        name: One of `CRITERIA`.
-        potential: Share of the criterion that goes to showing effects of the library, from 0 (they
-            are left out) to below 1, judged after touches taken at random. In a D-criterion they
-            simply join the determinant, whatever the share.
-        robust_machines: Number of drawn machines over whose sizes of errors the criterion is
-            averaged; 0 for
-            the expected sizes alone.
-        robust_share: Share of the drawn machines, the worst, that are averaged; 1 for all.
-        calibration: How well the features of a standard are known.
-    """
-
-    name: str = "I"
+    name: str = "I"  # one of `CRITERIA`
+    # share of the criterion that goes to showing effects of the library, from 0 (they are left out)
+    # to below 1, judged after touches taken at random. In a D-criterion they simply join the
+    # determinant, whatever the share
     potential: float = 0.0
+    # number of drawn machines over whose sizes of errors the criterion is averaged; 0 for the
+    # expected sizes alone
     robust_machines: int = 0
+    # share of the drawn machines, the worst, that are averaged; 1 for all
     robust_share: float = 1.0
+    # how well the features of a standard are known
     calibration: Calibration = field(default_factory=Calibration)
 
     def __post_init__(self) -> None:

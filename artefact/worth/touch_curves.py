@@ -18,27 +18,20 @@ from matstd.information.selection import Selection, fill
 from matstd.twin.errors import DesignError
 from matstd.twin.frames import Array
 
-COUNTS = (50, 70, 100, 140, 200, 300, 400, 550, 750, 1000)
-"""Numbers of touches."""
+COUNTS = (50, 70, 100, 140, 200, 300, 400, 550, 750, 1000)  # numbers of touches
 
 
 @dataclass(frozen=True, eq=False)
 class TouchCurve:
-    """Error left on one artefact against the number of touches.
-
-    Attributes:
-        designed: Number of touches that it was designed with.
-        counts: Numbers of touches, (K,), the designed one among them.
-        rms: Predicted root mean square of the unknown tool point deviation over the probed volume,
-            (K,), mm.
-        rms_user: The same over the user's workspace.
-    """
+    """Error left on one artefact against the number of touches."""
 
     name: str
-    designed: int
-    counts: tuple[int, ...]
+    designed: int  # number of touches that it was designed with
+    counts: tuple[int, ...]  # numbers of touches, (K,), the designed one among them
+    # predicted root mean square of the unknown tool point deviation over the probed volume, (K,),
+    # mm
     rms: Array
-    rms_user: Array
+    rms_user: Array  # the same over the user's workspace
 
 
 def touch_curve(

@@ -21,21 +21,13 @@ from matstd.twin.frames import Array, apply
 
 @dataclass(frozen=True, eq=False)
 class Details:
-    """What the workshop adds.
+    """What the workshop adds."""
 
-    Attributes:
-        seats: Of the balls, by their names.
-        pads: On which it stands; none where it stands on its whole underside.
-        screws: By size.
-        sides: Of the plate by name: DATUM_B, DATUM_C, NAME, THERMO.
-        bores: Lifting holes and thermometer pocket.
-    """
-
-    seats: dict[str, Seat]
-    pads: tuple[Pad, ...]
-    screws: tuple[Screw, ...]
-    sides: dict[str, Side]
-    bores: tuple[Bore, ...]
+    seats: dict[str, Seat]  # of the balls, by their names
+    pads: tuple[Pad, ...]  # on which it stands; none where it stands on its whole underside
+    screws: tuple[Screw, ...]  # by size
+    sides: dict[str, Side]  # of the plate by name: DATUM_B, DATUM_C, NAME, THERMO
+    bores: tuple[Bore, ...]  # lifting holes and thermometer pocket
     lettering: tuple[Lettering, ...]
     missing: tuple[str, ...]
 

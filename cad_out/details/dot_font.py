@@ -17,9 +17,7 @@ DEPTH = 0.35
 DOT = float(np.sqrt(DEPTH * (2.0 * CUTTER - DEPTH)))
 """Radius of a dot where it comes out, mm."""
 
-SMALL, LARGE = 5, 7
-"""Rows of dots of a letter."""
-
+SMALL, LARGE = 5, 7  # rows of dots of a letter
 _PITCH = 1.15  # mm between dots
 _COLUMNS = {SMALL: 3, LARGE: 5}
 

@@ -18,18 +18,12 @@ _AWAY = 14.0  # mm from a body that its number may stand
 
 @dataclass(frozen=True, eq=False)
 class Lettering:
-    """A line of text.
-
-    Attributes:
-        T_artefact_text: Begin of the line; x along it, y up the letters, z out of the material.
-        rows: Of dots in a letter, `SMALL` or `LARGE`.
-        of: Feature that it names; empty for the standard's own name.
-    """
+    """A line of text."""
 
     text: str
-    T_artefact_text: Array
-    rows: int
-    of: str = ""
+    T_artefact_text: Array  # begin of the line; x along it, y up the letters, z out of the material
+    rows: int  # of dots in a letter, `SMALL` or `LARGE`
+    of: str = ""  # feature that it names; empty for the standard's own name
 
     @property
     def dots(self) -> Array:

@@ -17,14 +17,11 @@ SCREW = Material(name="steel, property class 8.8", density=7.85e-6, expansion=11
 RELIEF = 1.0
 """How far the underside stands back from the pads, mm."""
 
-RELIEF_RADIUS = 3.0
-"""Of the inner edge between a pad and the relief, mm."""
-
+RELIEF_RADIUS = 3.0  # of the inner edge between a pad and the relief, mm
 _PAD_RIM = 4.0  # mm that a pad is wider than the counterbore above it
 _BESIDE_PAD = 1.5  # mm of relief between a pad's flank and the outline, at least
 _TENTH = 0.05  # mm of radius: the diameter of a pad is in tenths
 _IN_NUT = 1.5  # of its diameter that a screw reaches into the nut of the slot
-
 _SCREWS = (  # ISO 4762 and ISO 273, medium: diameter, through hole, head, mm
     (4.0, 4.5, 7.0),
     (5.0, 5.5, 8.5),
@@ -39,18 +36,12 @@ _LENGTHS = (16, 20, 25, 30, 35, 40, 45, 50, 55, 60, 65, 70, 80, 90, 100, 110, 12
 
 @dataclass(frozen=True, slots=True)
 class Screw:
-    """A cylinder-head screw.
+    """A cylinder-head screw."""
 
-    Attributes:
-        diameter: Of its thread, mm; its head is as high.
-        head: Diameter of the head, mm.
-        length: Below the head, mm.
-        holes: Name, x and y of the holes it is for, and height under its head, mm.
-    """
-
-    diameter: float
-    head: float
-    length: float
+    diameter: float  # of its thread, mm; its head is as high
+    head: float  # diameter of the head, mm
+    length: float  # below the head, mm
+    # name, x and y of the holes it is for, and height under its head, mm
     holes: tuple[tuple[str, float, float, float], ...]
 
     @property
@@ -61,19 +52,12 @@ class Screw:
 
 @dataclass(frozen=True, slots=True)
 class Pad:
-    """A round pad on which the standard stands, with a screw hole through it.
+    """A round pad on which the standard stands, with a screw hole through it."""
 
-    Attributes:
-        name: SEAT1 ...
-        x: Of its middle, mm.
-        y: Of its middle, mm.
-        radius: Mm.
-    """
-
-    name: str
-    x: float
-    y: float
-    radius: float
+    name: str  # SEAT1 ...
+    x: float  # of its middle, mm
+    y: float  # of its middle, mm
+    radius: float  # mm
 
 
 def pads_of(standard: Standard, sides: Iterable[Side]) -> tuple[Pad, ...]:

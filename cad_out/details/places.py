@@ -8,9 +8,7 @@ from matstd.artefact.body import BLEND, FreeformPatch, Standard, outline_distanc
 from matstd.twin.frames import Array, apply
 from matstd.twin.sampling import grid_points
 
-HEAVY = 25.0
-"""Mass above which a standard is lifted by a crane, kg."""
-
+HEAVY = 25.0  # mass above which a standard is lifted by a crane, kg
 _SHORTEST = 40.0  # mm of a side's straight part, below which it gets a flat
 _FLAT = 2.0  # mm that a flat is deep
 _LIFT_CORE, _LIFT_DEPTH, _LIFT_COLLAR = 8.5, 18.0, 12.5  # mm: M10, DIN 580, its collar's radius
@@ -23,40 +21,24 @@ _WALL = 4.0  # mm of material between two holes
 
 @dataclass(frozen=True, slots=True)
 class Side:
-    """An upright plane side of the plate.
+    """An upright plane side of the plate."""
 
-    Attributes:
-        normal: Outwards, one of (+-1, 0), (0, +-1).
-        offset: Of the plane along the normal, mm.
-        half_length: Of its straight part, mm.
-        flat: How much was taken off the outline for it, mm.
-    """
-
-    normal: tuple[int, int]
-    offset: float
-    half_length: float
-    flat: float
+    normal: tuple[int, int]  # outwards, one of (+-1, 0), (0, +-1)
+    offset: float  # of the plane along the normal, mm
+    half_length: float  # of its straight part, mm
+    flat: float  # how much was taken off the outline for it, mm
 
 
 @dataclass(frozen=True, slots=True)
 class Bore:
-    """A blind hole.
+    """A blind hole."""
 
-    Attributes:
-        name: LIFT1 ... or THERMO.
-        mouth: Middle of its mouth, mm.
-        direction: Into the material.
-        radius: Mm.
-        depth: Mm.
-        thread: What is cut into it; empty for a plain hole.
-    """
-
-    name: str
-    mouth: tuple[float, float, float]
-    direction: tuple[float, float, float]
-    radius: float
-    depth: float
-    thread: str = ""
+    name: str  # LIFT1 ... or THERMO
+    mouth: tuple[float, float, float]  # middle of its mouth, mm
+    direction: tuple[float, float, float]  # into the material
+    radius: float  # mm
+    depth: float  # mm
+    thread: str = ""  # what is cut into it; empty for a plain hole
 
 
 def sides_of(standard: Standard) -> dict[str, Side]:

@@ -24,24 +24,16 @@ _LAND = 0.04  # of the ball's radius, width of the ring on top of the post
 
 @dataclass(frozen=True, slots=True)
 class Seat:
-    """Countersink on top of a post, in heights above the standard's seat, mm.
-
-    Attributes:
-        half_angle: Between the axis and the countersink, rad.
-        contact_radius: Of the circle along which the ball touches.
-        top_radius: Of the post there.
-        rim_radius: Of the countersink there.
-        bottom: Height of the countersink's tip.
-    """
+    """Countersink on top of a post, in heights above the standard's seat, mm."""
 
     ball: str
-    half_angle: float
-    contact_radius: float
+    half_angle: float  # between the axis and the countersink, rad
+    contact_radius: float  # of the circle along which the ball touches
     contact: float
     top: float
-    top_radius: float
-    rim_radius: float
-    bottom: float
+    top_radius: float  # of the post there
+    rim_radius: float  # of the countersink there
+    bottom: float  # height of the countersink's tip
 
 
 def seat_of(sphere: DatumSphere) -> Seat:

@@ -13,12 +13,10 @@ from matstd.cad_out.details.detail_list import Details
 DATUMS = {"A": "DATUM_A", "B": "DATUM_B", "C": "DATUM_C"}
 """Faces that are the datums, in their order."""
 
-GENERAL = 0.4
-"""Width of the general profile tolerance of ISO 22081, mm: a milled body without fits."""
+GENERAL = 0.4  # width of the general profile tolerance of ISO 22081, mm: a milled body without fits
 
 PROFILE, POSITION = 0.05, 0.2
-FLATNESS, PARALLELISM, SQUARENESS = 0.005, 0.01, 0.02
-"""Widths of tolerance zones, mm."""
+FLATNESS, PARALLELISM, SQUARENESS = 0.005, 0.01, 0.02  # widths of tolerance zones, mm
 
 FACE_ROUGHNESS = 0.4
 """Ra of freeform faces, um: a probing ball rests on peaks of four times that, which scatter from
@@ -27,8 +25,7 @@ touch to touch by less than a probe repeats."""
 BALL_SIZE = 0.0025
 """Either way of the nominal diameter of a bought ball, mm; its lot is sorted far finer."""
 
-BALL_FORM = 0.00013
-"""Deviation from spherical form of a ball of grade 5, mm (ISO 3290-1)."""
+BALL_FORM = 0.00013  # deviation from spherical form of a ball of grade 5, mm (ISO 3290-1)
 
 CALIBRATED = {
     "diameter": BALL_SIZE,

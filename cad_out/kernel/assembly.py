@@ -43,27 +43,20 @@ _BODY, _SCREW = (0.66, 0.68, 0.70), (0.25, 0.26, 0.28)
 
 @dataclass(frozen=True, eq=False)
 class Product:
-    """One part of the product structure.
-
-    Attributes:
-        shape: Its solid, or a shell of one face.
-        material: What it is made of; none of a face by itself.
-        colour: Of its nameless faces.
-        places: Name and place of every instance, mm; the body and the balls stand where they are.
-        diameter: Of a ball, mm.
-        drawn: Signs of the tolerances, datums and sizes, polylines (N, 3) in mm by their names.
-    """
+    """One part of the product structure."""
 
     name: str
     about: str
-    shape: Any
+    shape: Any  # its solid, or a shell of one face
     faces: dict[str, Any]
-    material: Material | None
-    colour: tuple[float, float, float]
+    material: Material | None  # what it is made of; none of a face by itself
+    colour: tuple[float, float, float]  # of its nameless faces
+    # name and place of every instance, mm; the body and the balls stand where they are
     places: tuple[tuple[str, tuple[float, float, float]], ...]
     tolerances: tuple[Tolerance, ...] = ()
     notes: tuple[str, ...] = ()
-    diameter: float | None = None
+    diameter: float | None = None  # of a ball, mm
+    # signs of the tolerances, datums and sizes, polylines (N, 3) in mm by their names
     drawn: dict[str, list[Array]] = field(default_factory=dict)
 
     @cached_property

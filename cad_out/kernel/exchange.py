@@ -28,8 +28,7 @@ from matstd.cad_out.kernel.xcaf import new_document, set_name, settings, text
 from matstd.twin.errors import NotBuildable
 from matstd.twin.versions import versions
 
-TIME_STAMP = "2000-01-01T00:00:00"
-"""In every STEP file: the same standard gives the same bytes."""
+TIME_STAMP = "2000-01-01T00:00:00"  # in every STEP file: the same standard gives the same bytes
 
 _WHITE, _BLACK = (f"DRAUGHTING_PRE_DEFINED_COLOUR('{c}')" for c in ("white", "black"))
 """Ink of the kernel, unseen on paper, and ours."""
@@ -44,17 +43,11 @@ _SETTINGS = {
 
 @dataclass(frozen=True, slots=True)
 class Origin:
-    """Where a STEP file comes from, for its header.
+    """Where a STEP file comes from, for its header."""
 
-    Attributes:
-        design: SHA-256 of the design file, `standard.toml`.
-        author: Who is responsible for it.
-        organisation: The author's employer.
-    """
-
-    design: str
-    author: str
-    organisation: str
+    design: str  # SHA-256 of the design file, `standard.toml`
+    author: str  # who is responsible for it
+    organisation: str  # the author's employer
 
 
 def write_step(path: Path, products: Sequence[Product], name: str, origin: Origin) -> None:

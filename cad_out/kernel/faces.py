@@ -85,15 +85,11 @@ def is_closed(shape: Any) -> bool:
 
 @dataclass(frozen=True, eq=False)
 class FaceNaming:
-    """What faces are named after.
-
-    Attributes:
-        surfaces: The kernel's surfaces of the patches, by name.
-    """
+    """What faces are named after."""
 
     standard: Standard
     details: Details
-    surfaces: dict[str, Any]
+    surfaces: dict[str, Any]  # the kernel's surfaces of the patches, by name
 
     @property
     def names(self) -> tuple[str, ...]:

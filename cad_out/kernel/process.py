@@ -9,8 +9,7 @@ from pathlib import Path
 
 from matstd.twin.errors import DesignError, NotBuildable
 
-REFUSAL = "refusal.txt"
-"""File in the shared folder that holds the reason of a refusal."""
+REFUSAL = "refusal.txt"  # file in the shared folder that holds the reason of a refusal
 
 HANG = 3600.0
 """Seconds after which the kernel counts as hung: forty times what it needs, for a busy machine."""
@@ -26,17 +25,11 @@ except matstd.twin.errors.DesignError as refusal:
 
 @dataclass(frozen=True, slots=True)
 class Ending:
-    """How a task in another process ended.
+    """How a task in another process ended."""
 
-    Attributes:
-        code: Exit code; negative for a signal, None for a task that was stopped.
-        refusal: What the task itself refused, in one line; empty if nothing.
-        last_line: Last line of what it complained about.
-    """
-
-    code: int | None
-    refusal: str
-    last_line: str
+    code: int | None  # exit code; negative for a signal, None for a task that was stopped
+    refusal: str  # what the task itself refused, in one line; empty if nothing
+    last_line: str  # last line of what it complained about
 
     @property
     def is_good(self) -> bool:

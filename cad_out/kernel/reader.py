@@ -66,30 +66,20 @@ _ANGLE = 0.3  # rad between neighbouring triangles; the chord decides on all but
 
 @dataclass(frozen=True, slots=True)
 class Reread:
-    """What the kernel finds in a STEP file that it has re-read.
+    """What the kernel finds in a STEP file that it has re-read."""
 
-    Attributes:
-        solids: All of them, instances counted.
-        volume: Of all solids, mm^3.
-        least_face: Area of the smallest face, mm^2.
-        least_edge: Length of the shortest edge, mm.
-        products: How often each product is there, by name.
-        tolerances: Geometrical tolerances with their datums.
-        notes: General notes of all parts.
-        signs: Of what is drawn, the length of its lines and their centre of mass, mm.
-    """
-
-    solids: int
+    solids: int  # all of them, instances counted
     is_valid: bool
     is_closed: bool
     shells: int
-    volume: float
-    least_face: float
-    least_edge: float
-    products: dict[str, int]
+    volume: float  # of all solids, mm^3
+    least_face: float  # area of the smallest face, mm^2
+    least_edge: float  # length of the shortest edge, mm
+    products: dict[str, int]  # how often each product is there, by name
     names: tuple[str, ...]
-    tolerances: tuple[Tolerance, ...]
-    notes: tuple[str, ...]
+    tolerances: tuple[Tolerance, ...]  # geometrical tolerances with their datums
+    notes: tuple[str, ...]  # general notes of all parts
+    # of what is drawn, the length of its lines and their centre of mass, mm
     signs: dict[str, tuple[float, float, float, float]]
 
 

@@ -48,18 +48,13 @@ _ON = 1e-5  # mm: an edge lies on an outline
 
 @dataclass(frozen=True, slots=True)
 class Solid:
-    """A finished body of the kernel.
-
-    Attributes:
-        plain: The same without its lettering, which needs a hundred times as many triangles.
-        faces: FaceNaming faces: FF1 ..., DATUM_A, DATUM_B, DATUM_C, seats, bores and holes.
-        plain_faces: The same of the plain body.
-    """
+    """A finished body of the kernel."""
 
     shape: Any
-    plain: Any
+    plain: Any  # the same without its lettering, which needs a hundred times as many triangles
+    # FaceNaming faces: FF1 ..., DATUM_A, DATUM_B, DATUM_C, seats, bores and holes
     faces: dict[str, Any]
-    plain_faces: dict[str, Any]
+    plain_faces: dict[str, Any]  # the same of the plain body
 
 
 def build_solid(standard: Standard, details: Details) -> Solid:

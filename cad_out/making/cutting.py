@@ -19,15 +19,9 @@ from matstd.twin.units import DEG
 RADIUS, OVERHANG = FINISHING_RADIUS, 60.0
 """Of the finishing ball-end mill, and its overhang from the holder: 10 D, mm."""
 
-LONGER = (80.0, 100.0, 120.0)
-"""Overhangs that are tried where the usual one is too short, mm."""
-
-CUTTERS = (20.0, 16.0, 12.0, 10.0, 8.0, 6.0)
-"""Diameters of ball-end mills, mm."""
-
-TILTS = (15.0 * DEG, 30.0 * DEG, 45.0 * DEG)
-"""Of the cutter's axis."""
-
+LONGER = (80.0, 100.0, 120.0)  # overhangs that are tried where the usual one is too short, mm
+CUTTERS = (20.0, 16.0, 12.0, 10.0, 8.0, 6.0)  # diameters of ball-end mills, mm
+TILTS = (15.0 * DEG, 30.0 * DEG, 45.0 * DEG)  # of the cutter's axis
 _HOLDER = ((60.0, 13.5), (130.0, 25.0))  # mm from the ball's centre, radius: a shrink-fit holder
 _LONG = 220.0  # mm from the ball's centre to what is beside the spindle
 _SHARE = 0.8  # of the least concave radius that a cutter may have
@@ -37,27 +31,19 @@ _AZIMUTHS = 8
 
 @dataclass(frozen=True, eq=False)
 class Cutting:
-    """What cutters make of a body.
+    """What cutters make of a body."""
 
-    Attributes:
-        points: Number of surface points tested, by kind.
-        upright: Share of them that the finishing cutter reaches from above.
-        tilted: Share that it reaches with its axis tilted by 45 degrees at most.
-        out_of_reach: Features with a point that it does not reach at all.
-        overhang: The least with which it reaches everything, mm; infinite if none of `LONGER` does.
-        cutter: Largest ball-end mill for every face, its diameter, mm; 0 where none fits. It stays
-            within `_SHARE` of the concave radius between the edges, and fits beyond them.
-        radius: Least concave radius of every face between its edges, mm.
-        whole_radius: The same of the untrimmed spline, over which a cutter may leave, mm.
-    """
-
-    points: dict[str, int]
-    upright: float
-    tilted: float
-    out_of_reach: tuple[str, ...]
+    points: dict[str, int]  # number of surface points tested, by kind
+    upright: float  # share of them that the finishing cutter reaches from above
+    tilted: float  # share that it reaches with its axis tilted by 45 degrees at most
+    out_of_reach: tuple[str, ...]  # features with a point that it does not reach at all
+    # the least with which it reaches everything, mm; infinite if none of `LONGER` does
     overhang: float
+    # largest ball-end mill for every face, its diameter, mm; 0 where none fits. It stays within
+    # `_SHARE` of the concave radius between the edges, and fits beyond them
     cutter: dict[str, float]
-    radius: dict[str, float]
+    radius: dict[str, float]  # least concave radius of every face between its edges, mm
+    # the same of the untrimmed spline, over which a cutter may leave, mm
     whole_radius: dict[str, float]
 
 

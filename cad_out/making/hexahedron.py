@@ -14,8 +14,7 @@ import numpy as np
 
 from matstd.twin.frames import Array
 
-CORNERS = np.array(list(product((-1.0, 1.0), repeat=3)))
-"""Natural coordinates of the nodes, (8, 3)."""
+CORNERS = np.array(list(product((-1.0, 1.0), repeat=3)))  # natural coordinates of the nodes, (8, 3)
 
 
 def cube(side: float, modulus: float, poisson: float) -> Array:

@@ -25,24 +25,17 @@ _PITCH = 10.0  # mm between the places that are tested
 
 @dataclass(frozen=True, slots=True)
 class FaceHint:
-    """How one face is milled with the finishing cutter.
+    """How one face is milled with the finishing cutter."""
 
-    Attributes:
-        convex: Least convex radius of the trimmed face, mm; inf where it has none.
-        slope: Least and largest angle between its normals and z, rad.
-        step_over: For every roughness of `ROUGHNESS`, mm.
-        tilts: Tilts of the axis at which the cutter reaches all of it in some direction, rad.
-        axis: Tilt and azimuth of the axis that keeps farthest from cutting with the tip, rad; None
-            where the cutter reaches all of the face at no single tilt.
-        contact: Least and largest contact angle with that axis, rad.
-    """
-
-    convex: float
-    slope: tuple[float, float]
-    step_over: tuple[float, ...]
+    convex: float  # least convex radius of the trimmed face, mm; inf where it has none
+    slope: tuple[float, float]  # least and largest angle between its normals and z, rad
+    step_over: tuple[float, ...]  # for every roughness of `ROUGHNESS`, mm
+    # tilts of the axis at which the cutter reaches all of it in some direction, rad
     tilts: tuple[float, ...]
+    # tilt and azimuth of the axis that keeps farthest from cutting with the tip, rad; None where
+    # the cutter reaches all of the face at no single tilt
     axis: tuple[float, float] | None
-    contact: tuple[float, float] | None
+    contact: tuple[float, float] | None  # least and largest contact angle with that axis, rad
 
 
 def step_over(roughness: float, radius: float, curvature: float) -> float:

@@ -39,48 +39,28 @@ _TURNS = 24
 
 @dataclass(frozen=True, slots=True)
 class Stud:
-    """A turned post with its thread.
+    """A turned post with its thread."""
 
-    Attributes:
-        ball: Its name.
-        thread: Diameter, mm.
-        core: Diameter of its hole before tapping, mm.
-        depth: Length of the thread below the shoulder, mm.
-    """
-
-    ball: str
-    thread: float
-    core: float
-    depth: float
+    ball: str  # its name
+    thread: float  # diameter, mm
+    core: float  # diameter of its hole before tapping, mm
+    depth: float  # length of the thread below the shoulder, mm
 
 
 @dataclass(frozen=True, eq=False)
 class Block:
-    """A face on a part of its own.
+    """A face on a part of its own."""
 
-    Attributes:
-        face: Its name.
-        places: Of its three screws and pads, (3, 2), mm.
-        pad: Radius of the pads, mm.
-        thread: Diameter of the screws, mm.
-        core: Diameter of their holes in the block before tapping, mm.
-        through: Diameter of their holes in the plate, mm.
-        head: Diameter of the holes for their heads in the underside, mm.
-        sunk: Height of the plane on which the heads bear, mm.
-        depth: Height at which the hole for the thread ends in the block, mm.
-        length: Of a screw below its head, mm.
-    """
-
-    face: str
-    places: Array
-    pad: float
-    thread: float
-    core: float
-    through: float
-    head: float
-    sunk: float
-    depth: float
-    length: float
+    face: str  # its name
+    places: Array  # of its three screws and pads, (3, 2), mm
+    pad: float  # radius of the pads, mm
+    thread: float  # diameter of the screws, mm
+    core: float  # diameter of their holes in the block before tapping, mm
+    through: float  # diameter of their holes in the plate, mm
+    head: float  # diameter of the holes for their heads in the underside, mm
+    sunk: float  # height of the plane on which the heads bear, mm
+    depth: float  # height at which the hole for the thread ends in the block, mm
+    length: float  # of a screw below its head, mm
 
 
 @dataclass(frozen=True, eq=False)

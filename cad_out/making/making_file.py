@@ -27,22 +27,16 @@ FIRST_MODE, SAG = 500.0, 0.1 * UM
 
 @dataclass(frozen=True, eq=False)
 class Making:
-    """Whether a standard can be cut, and how it stands.
+    """Whether a standard can be cut, and how it stands."""
 
-    Attributes:
-        cutting: Reach of cutters.
-        stiffness: First mode and sag; None where the modulus of the material is not known.
-        hints: How every face is milled.
-        prices: Estimates of both constructions; none for a material without rates.
-        make: The construction that the workshop should make.
-    """
-
-    cutting: Cutting
+    cutting: Cutting  # reach of cutters
+    # first mode and sag; None where the modulus of the material is not known
     stiffness: Stiffness | None
-    hints: dict[str, FaceHint]
+    hints: dict[str, FaceHint]  # how every face is milled
     material: Material
+    # estimates of both constructions; none for a material without rates
     prices: tuple[Price, ...] = ()
-    make: Construction = Construction.BILLET
+    make: Construction = Construction.BILLET  # the construction that the workshop should make
 
 
 def making_of(standard: Standard, stiffness: Stiffness | None) -> Making:

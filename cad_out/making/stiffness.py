@@ -19,9 +19,7 @@ from matstd.cad_out.making.hexahedron import CORNERS, cube
 from matstd.twin.frames import Array
 from matstd.twin.sampling import grid_points
 
-GRAVITY = 9.81e3
-"""In mm/s^2."""
-
+GRAVITY = 9.81e3  # in mm/s^2
 _FILLED = 0.02  # of a cube, below which it is left out
 _TO_TIP = 0.25  # of a cantilever's mass that swings with its end: 33/140, rounded up
 _SHARE = 0.2  # of a displacement, its standard uncertainty: beams within 8 %, screws idealised
@@ -33,21 +31,16 @@ _STIFF = 1e9  # N/mm that hold a node: ten thousand times a cube's own
 
 @dataclass(frozen=True, eq=False)
 class Stiffness:
-    """What gravity and vibration do to a standard.
+    """What gravity and vibration do to a standard."""
 
-    Attributes:
-        first_mode: Lowest natural frequency on rigid screws, Hz.
-        per_weight: Displacement of every face's middle and ball, along x, y, z (rows), by weight
-            along x, y, z (columns), (3, 3), mm.
-        at_balls: Force on a ball per deflection in its softest direction, with post, plate and
-            pads, N/mm, by name.
-        cube: Side of the elements, mm.
-    """
-
-    first_mode: float
+    first_mode: float  # lowest natural frequency on rigid screws, Hz
+    # displacement of every face's middle and ball, along x, y, z (rows), by weight along x, y, z
+    # (columns), (3, 3), mm
     per_weight: dict[str, Array]
+    # force on a ball per deflection in its softest direction, with post, plate and pads, N/mm, by
+    # name
     at_balls: dict[str, float]
-    cube: float
+    cube: float  # side of the elements, mm
 
     @cached_property
     def sag(self) -> dict[str, float]:

@@ -11,9 +11,7 @@ from matstd.artefact.body import DatumSphere, FreeformPatch, Standard
 from matstd.twin.frames import Array, apply
 from matstd.twin.numbers import distinct_rows
 
-WELD = 1e-6
-"""Corners nearer than this are one corner, mm."""
-
+WELD = 1e-6  # corners nearer than this are one corner, mm
 _ON_SURFACE = 0.1  # mm, coarser than any mesh made here
 _ALIKE = 0.9  # cosine between a triangle's and a surface's normal
 
@@ -29,17 +27,11 @@ _LATTICE = (
 
 @dataclass(frozen=True, eq=False)
 class Mesh:
-    """A triangle mesh whose triangles know their face.
+    """A triangle mesh whose triangles know their face."""
 
-    Attributes:
-        corners: Shape (V, 3), mm.
-        triangles: Indices into the corners, outward winding, shape (F, 3).
-        owner: Name of the feature of each triangle, (F,); empty for the rest of the body.
-    """
-
-    corners: Array
-    triangles: np.ndarray
-    owner: np.ndarray
+    corners: Array  # shape (V, 3), mm
+    triangles: np.ndarray  # indices into the corners, outward winding, shape (F, 3)
+    owner: np.ndarray  # name of the feature of each triangle, (F,); empty for the rest of the body
 
     def of(self, which: np.ndarray) -> "Mesh":
         """Some triangles with the corners that they have."""

@@ -29,17 +29,12 @@ Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/>
 
 @dataclass(frozen=True, eq=False)
 class Piece:
-    """Triangles of one product.
-
-    Attributes:
-        mesh: In its own frame, mm.
-        colours: Of every triangle, red, green, blue from 0 to 1, (F, 3).
-        places: Name and place of every instance, mm.
-    """
+    """Triangles of one product."""
 
     name: str
-    mesh: Mesh
-    colours: Array
+    mesh: Mesh  # in its own frame, mm
+    colours: Array  # of every triangle, red, green, blue from 0 to 1, (F, 3)
+    # name and place of every instance, mm
     places: tuple[tuple[str, tuple[float, float, float]], ...]
 
 

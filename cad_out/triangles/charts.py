@@ -19,56 +19,34 @@ _TABLE = 400  # places at which the length along a profile is tabulated
 
 @dataclass(frozen=True, slots=True)
 class Chart:
-    """A plane chart of a surface.
+    """A plane chart of a surface."""
 
-    Attributes:
-        place: Parameters of the surface to places in the chart, (N, 2) both.
-        point: Places to points, (N, 2) to (N, 3), mm.
-        spacing: Of places, at which the chord is kept; 0 if the refinement is to find it.
-    """
-
-    place: Map
-    point: Map
-    spacing: float = 0.0
+    place: Map  # parameters of the surface to places in the chart, (N, 2) both
+    point: Map  # places to points, (N, 2) to (N, 3), mm
+    spacing: float = 0.0  # of places, at which the chord is kept; 0 if the refinement is to find it
     is_flat: bool = False
 
 
 @dataclass(frozen=True, slots=True)
 class Frame:
-    """Where a surface of the kernel stands; its directions may be left-handed.
+    """Where a surface of the kernel stands; its directions may be left-handed."""
 
-    Attributes:
-        x: Direction from which angles are counted, (3,).
-        y: Direction to which they are, (3,).
-        z: Axis, (3,).
-        origin: Shape (3,), mm.
-    """
-
-    x: Array
-    y: Array
-    z: Array
-    origin: Array
+    x: Array  # direction from which angles are counted, (3,)
+    y: Array  # direction to which they are, (3,)
+    z: Array  # axis, (3,)
+    origin: Array  # shape (3,), mm
 
 
 @dataclass(frozen=True, slots=True)
 class Profile:
-    """What turns round the axis of a surface of revolution, by its parameter v.
+    """What turns round the axis of a surface of revolution, by its parameter v."""
 
-    Attributes:
-        radius: Distance from the axis, mm.
-        height: Along the axis, mm.
-        pace: Length per unit of v, mm.
-        stretch: Of triangles, along the profile over round the axis.
-        tip: Parameter at which a cone ends; nan elsewhere.
-        turn: Angle of a cone unrolled over that round its axis.
-    """
-
-    radius: Map
-    height: Map
-    pace: float
-    stretch: float
-    tip: float = np.nan
-    turn: float = np.nan
+    radius: Map  # distance from the axis, mm
+    height: Map  # along the axis, mm
+    pace: float  # length per unit of v, mm
+    stretch: float  # of triangles, along the profile over round the axis
+    tip: float = np.nan  # parameter at which a cone ends; nan elsewhere
+    turn: float = np.nan  # angle of a cone unrolled over that round its axis
 
 
 def cylinder(radius: float) -> Profile:

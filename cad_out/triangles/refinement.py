@@ -25,31 +25,20 @@ _ENOUGH = 0.8  # of the chord: distances between the tested points are a little 
 
 @dataclass(eq=False)
 class Edge:
-    """An edge of the body with its points.
+    """An edge of the body with its points."""
 
-    Attributes:
-        at: Parameter to points, (T,) to (T, 3), mm.
-        t: Parameters of its points in order, ends included.
-        ids: Number of each of them among all points.
-    """
-
-    at: Callable[[Array], Array]
-    t: Array
-    ids: np.ndarray
+    at: Callable[[Array], Array]  # parameter to points, (T,) to (T, 3), mm
+    t: Array  # parameters of its points in order, ends included
+    ids: np.ndarray  # number of each of them among all points
 
 
 @dataclass(eq=False)
 class Side:
-    """One side of an edge, as the outline of a face has it; the seam of a face has two.
-
-    Attributes:
-        at: Parameter of the edge to places in the chart, (T,) to (T, 2).
-        t: Parameters whose places are known.
-    """
+    """One side of an edge, as the outline of a face has it; the seam of a face has two."""
 
     edge: int
-    at: Callable[[Array], Array]
-    t: Array = field(default_factory=lambda: np.empty(0))
+    at: Callable[[Array], Array]  # parameter of the edge to places in the chart, (T,) to (T, 2)
+    t: Array = field(default_factory=lambda: np.empty(0))  # parameters whose places are known
     places: Array = field(default_factory=lambda: np.empty((0, 2)))
 
     def refreshed(self, t: Array) -> Array:
@@ -64,27 +53,19 @@ class Side:
 
 @dataclass(eq=False)
 class Face:
-    """A face: a chart of its surface, its outline there, points inside.
+    """A face: a chart of its surface, its outline there, points inside."""
 
-    Attributes:
-        point: Places in the chart to points, (N, 2) to (N, 3), mm.
-        sides: Of the outline, in any order.
-        is_flat: Whether triangles have no distance from the surface.
-        is_reversed: Whether the outward normal is against the chart's.
-        spacing: In the chart, of points to begin with; 0 for none.
-        inner: Places of the points inside, (M, 2).
-        triangles: Of the last triangulation, winding of the chart, (F, 3): into the outline's
-            points and then those inside.
-        outline: Number of every point of the outline among all, (B,).
-    """
-
-    point: Callable[[Array], Array]
-    sides: list[Side]
-    is_flat: bool
-    is_reversed: bool
-    spacing: float = 0.0
+    point: Callable[[Array], Array]  # places in the chart to points, (N, 2) to (N, 3), mm
+    sides: list[Side]  # of the outline, in any order
+    is_flat: bool  # whether triangles have no distance from the surface
+    is_reversed: bool  # whether the outward normal is against the chart's
+    spacing: float = 0.0  # in the chart, of points to begin with; 0 for none
+    # places of the points inside, (M, 2)
     inner: Array = field(default_factory=lambda: np.empty((0, 2)))
+    # of the last triangulation, winding of the chart, (F, 3): into the outline's points and then
+    # those inside
     triangles: np.ndarray = field(default_factory=lambda: np.empty((0, 3), dtype=int))
+    # number of every point of the outline among all, (B,)
     outline: np.ndarray = field(default_factory=lambda: np.empty(0, dtype=int))
 
 

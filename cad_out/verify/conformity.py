@@ -35,8 +35,7 @@ from matstd.twin.files.whole import write_json
 from matstd.twin.frames import Array
 from matstd.twin.units import NM, UM
 
-FACE_LIMIT = 0.01 * UM
-"""Largest distance of a face in the STEP file from its design, mm."""
+FACE_LIMIT = 0.01 * UM  # largest distance of a face in the STEP file from its design, mm
 
 VOLUME_LIMIT = 1e-7
 """Relative difference of the volumes before and after the STEP file; the kernel's own scatter."""
@@ -48,8 +47,7 @@ LEAST_FACE, LEAST_EDGE = 1.0, 0.5
 """Smallest face, mm^2, and shortest edge, mm, of an upright standard: smaller ones are slivers,
 which hinder tool-path programming and meshing."""
 
-SHARP_LIMIT = 0.1
-"""Length of sharp inner edges on an upright standard, mm."""
+SHARP_LIMIT = 0.1  # length of sharp inner edges on an upright standard, mm
 
 ASPECT_LIMIT = 20.0
 """Longest side of a triangle over the height on it: where programs for finite elements begin to
@@ -60,70 +58,45 @@ _SHARP = 0.6  # rad between two triangles; those of a blend are half as far apar
 
 @dataclass(frozen=True, slots=True)
 class Conformity:
-    """Measured figures of a built standard, lengths in mm.
-
-    Attributes:
-        expected: Solids that should be there: the body, balls and screws.
-        products: Parts that the text of the STEP file names, with the number of their instances.
-        displaced: Instances of body or balls that do not stand where they were designed.
-        is_valid: The kernel finds no fault in the solid it has read.
-        is_closed: All its shells are closed.
-        shells: One a solid, or more where one has closed pockets inside.
-        is_millimetre: The file's length unit.
-        volume: Of body and balls as read, mm^3.
-        volume_built: Of them as built, mm^3.
-        mass: Of body and balls, kg; the screws stay with the table.
-        least_face: Area of the smallest face, mm^2.
-        least_edge: Length of the shortest edge, mm.
-        is_upright: All pillars and posts stand upright and are blended.
-        names: Faces that carry a name in the file.
-        missing: Faces that should and do not, or are not parts in the file of single faces.
-        missing_details: Workshop details that found no room, in words.
-        parts: How often each part of `standard-parts.step` is there; none where a face leans.
-        misread: Tolerances, notes and drawn signs that a reader does not find as designed.
-        face_deviation: Largest distance from the design by face, in both STEP files, without any
-            CAD kernel.
-        area_error: Of every patch's trimmed face in the mesh against the design, relative.
-        is_watertight: Of the STL file, by trimesh.
-        mesh_volume: By the divergence theorem, mm^3.
-        manifold_volume: By manifold3d, mm^3; nan where it refuses the mesh.
-        sharp: Length of inner edges that no ball-end cutter makes, bores left out, mm.
-        chord: Asked for, mm.
-        chord_error: Largest distance of the mesh from the exact surface by feature.
-        body_chord_error: The same of all faces of the body, by the kernel's projection.
-        aspect: Longest side of a triangle over the height on it, the largest.
-    """
+    """Measured figures of a built standard, lengths in mm."""
 
     solids: int
-    expected: int
+    expected: int  # solids that should be there: the body, balls and screws
+    # parts that the text of the STEP file names, with the number of their instances
     products: dict[str, int]
+    # instances of body or balls that do not stand where they were designed
     displaced: tuple[str, ...]
-    is_valid: bool
-    is_closed: bool
-    shells: int
-    is_millimetre: bool
-    volume: float
-    volume_built: float
-    mass: float
-    least_face: float
-    least_edge: float
-    is_upright: bool
-    names: tuple[str, ...]
+    is_valid: bool  # the kernel finds no fault in the solid it has read
+    is_closed: bool  # all its shells are closed
+    shells: int  # one a solid, or more where one has closed pockets inside
+    is_millimetre: bool  # the file's length unit
+    volume: float  # of body and balls as read, mm^3
+    volume_built: float  # of them as built, mm^3
+    mass: float  # of body and balls, kg; the screws stay with the table
+    least_face: float  # area of the smallest face, mm^2
+    least_edge: float  # length of the shortest edge, mm
+    is_upright: bool  # all pillars and posts stand upright and are blended
+    names: tuple[str, ...]  # faces that carry a name in the file
+    # faces that should and do not, or are not parts in the file of single faces
     missing: tuple[str, ...]
-    missing_details: tuple[str, ...]
+    missing_details: tuple[str, ...]  # workshop details that found no room, in words
+    # how often each part of `standard-parts.step` is there; none where a face leans
     parts: dict[str, int]
+    # tolerances, notes and drawn signs that a reader does not find as designed
     misread: tuple[str, ...]
+    # largest distance from the design by face, in both STEP files, without any CAD kernel
     face_deviation: dict[str, float]
+    # of every patch's trimmed face in the mesh against the design, relative
     area_error: dict[str, float]
-    is_watertight: bool
-    mesh_volume: float
-    manifold_volume: float
-    sharp: float
+    is_watertight: bool  # of the STL file, by trimesh
+    mesh_volume: float  # by the divergence theorem, mm^3
+    manifold_volume: float  # by manifold3d, mm^3; nan where it refuses the mesh
+    sharp: float  # length of inner edges that no ball-end cutter makes, bores left out, mm
     triangles: int
-    chord: float
-    chord_error: dict[str, float]
-    body_chord_error: float
-    aspect: float
+    chord: float  # asked for, mm
+    chord_error: dict[str, float]  # largest distance of the mesh from the exact surface by feature
+    body_chord_error: float  # the same of all faces of the body, by the kernel's projection
+    aspect: float  # longest side of a triangle over the height on it, the largest
     step_bytes: int
     stl_bytes: int
 

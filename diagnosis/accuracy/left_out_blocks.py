@@ -17,11 +17,8 @@ from matstd.twin.record import IntArray, Touches
 PARTS_OF_TIME = 5
 """Stretches of time that are left out in turn; a law of warming up is seen in one of them."""
 
-MIN_ROWS = 4
-"""Touches that a block must leave out to be a test."""
-
-MAX_BLOCKS = 6
-"""Blocks of a choice by prediction: each is one more search."""
+MIN_ROWS = 4  # touches that a block must leave out to be a test
+MAX_BLOCKS = 6  # blocks of a choice by prediction: each is one more search
 
 MEMORY_LENGTHS = 3.0
 """Times that a block is longer than the memory of the residual: 5 % are left at its middle."""

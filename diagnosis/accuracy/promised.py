@@ -30,36 +30,24 @@ MIN_BLOCKS = 3
 ON_STANDARD = (Instrument.TOUCH_PROBE, Instrument.CMM, Instrument.BALL_BAR)
 """Instruments whose points are of a body that is placed as a whole."""
 
-LINEAR = 3
-"""Linear axes that bring the tool to any point."""
+LINEAR = 3  # linear axes that bring the tool to any point
 
 
 @dataclass(frozen=True, slots=True)
 class Domain:
-    """Blocks of one domain left out in turn.
+    """Blocks of one domain left out in turn."""
 
-    Attributes:
-        name: A column of the run, `X_mm`; or `time_s`, `setup`.
-        ratio: Their errors over their uncertainties, rms; 1 for a model that holds there.
-    """
-
-    name: str
-    ratio: float
+    name: str  # a column of the run, `X_mm`; or `time_s`, `setup`
+    ratio: float  # their errors over their uncertainties, rms; 1 for a model that holds there
 
 
 @dataclass(frozen=True, slots=True)
 class Promise:
-    """Errors to expect of a model, rms of single touches, mm.
+    """Errors to expect of a model, rms of single touches, mm."""
 
-    Attributes:
-        same: In another run of the same touches.
-        elsewhere: At other places, paths and set-ups within what was probed.
-        domains: Blocks left out, the worst first.
-    """
-
-    same: float
-    elsewhere: float
-    domains: tuple[Domain, ...]
+    same: float  # in another run of the same touches
+    elsewhere: float  # at other places, paths and set-ups within what was probed
+    domains: tuple[Domain, ...]  # blocks left out, the worst first
 
 
 def promise(fit: Fit) -> Promise:

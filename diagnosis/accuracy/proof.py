@@ -21,18 +21,12 @@ class Proof:
     The volumetric error is the displacement of the ball centre relative to the standard, in the
     artefact frame: what is left once the standard has been aligned, so that no set-up is counted
     as an error of the machine.
-
-    Attributes:
-        poses: Poses of the comparison; none of them was probed.
-        before: True volumetric error, (N, 3), mm.
-        predicted: By the identified model, (N, 3), mm.
-        u: Standard uncertainty of the prediction, root of the summed variances, (N,), mm.
     """
 
-    poses: Touches
-    before: Array
-    predicted: Array
-    u: Array
+    poses: Touches  # poses of the comparison; none of them was probed
+    before: Array  # true volumetric error, (N, 3), mm
+    predicted: Array  # by the identified model, (N, 3), mm
+    u: Array  # standard uncertainty of the prediction, root of the summed variances, (N,), mm
 
     @property
     def after(self) -> Array:

@@ -18,11 +18,8 @@ from matstd.twin.frames import Array
 from matstd.twin.numbers import rms
 from matstd.twin.record import IntArray, Touches
 
-NEAR = 0.05
-"""Distance of near neighbours, as a share of what was probed of every reading."""
-
-MIN_PAIRS = 10
-"""Pairs of neighbours from which their differences are a figure."""
+NEAR = 0.05  # distance of near neighbours, as a share of what was probed of every reading
+MIN_PAIRS = 10  # pairs of neighbours from which their differences are a figure
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,19 +32,13 @@ class Scatter:
 
 @dataclass(frozen=True, slots=True)
 class Repeatability:
-    """Scatter of repeated touches beside the stated noise.
+    """Scatter of repeated touches beside the stated noise."""
 
-    Attributes:
-        stated: Root mean square of the stated uncertainties, mm.
-        replicates: Of one place, pose and approach.
-        revisits: Of one place and approach in any pose: it includes what happened between.
-        neighbours: Of near neighbours; an upper bound.
-    """
-
-    stated: float
-    replicates: Scatter | None
+    stated: float  # root mean square of the stated uncertainties, mm
+    replicates: Scatter | None  # of one place, pose and approach
+    # of one place and approach in any pose: it includes what happened between
     revisits: Scatter | None
-    neighbours: Scatter | None
+    neighbours: Scatter | None  # of near neighbours; an upper bound
 
     @property
     def known(self) -> Scatter | None:

@@ -31,34 +31,26 @@ MAX_LOST_SHARE = 0.2
 """Share of the square explained by the best period of the scan by which another may fall behind and
 still be refined: between two scanned ones up to a tenth is lost."""
 
-MAX_REFINED = 200
-"""Most periods that are refined."""
+MAX_REFINED = 200  # most periods that are refined
 
 SCANS = 6
 """Scans, each four times finer: alike are periods that agree to a part of their uncertainty."""
 
-MAX_UNEVENNESS = 0.02
-"""Largest distance of a target from an even grid, as a share of its step."""
-
-MAX_FRACTION = 8
-"""Whole fractions of a stated pitch that are preferred to other periods."""
+MAX_UNEVENNESS = 0.02  # largest distance of a target from an even grid, as a share of its step
+MAX_FRACTION = 8  # whole fractions of a stated pitch that are preferred to other periods
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Alike:
-    """A periodic effect at every other period that explains the run as well.
-
-    Attributes:
-        others: The effect at other periods, longest first, with their sizes.
-        step: Distance of the targets, mm, where they stand evenly; None where they do not, and of
-            harmonics: those that even targets confuse are not scanned.
-        pitch: Stated pitch of the axis, where the named period is a whole fraction of it; None
-            where nothing speaks for the named one.
-    """
+    """A periodic effect at every other period that explains the run as well."""
 
     axis: str
-    others: tuple[ScaledEffect, ...]
+    others: tuple[ScaledEffect, ...]  # the effect at other periods, longest first, with their sizes
+    # distance of the targets, mm, where they stand evenly; None where they do not, and of
+    # harmonics: those that even targets confuse are not scanned
     step: float | None
+    # stated pitch of the axis, where the named period is a whole fraction of it; None where nothing
+    # speaks for the named one
     pitch: float | None
     is_harmonic: bool = False
 

@@ -34,17 +34,13 @@ MAX_RIVALS = 40
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Rival:
-    """An effect that explains what another one explains.
-
-    Attributes:
-        log_odds: Evidence for the named effect against this one, in natural logarithms; small or
-            negative where the run cannot distinguish them.
-        overlap: Correlation of what the two explain, 1 where the signatures coincide.
-    """
+    """An effect that explains what another one explains."""
 
     sized: ScaledEffect
+    # evidence for the named effect against this one, in natural logarithms; small or negative where
+    # the run cannot distinguish them
     log_odds: float
-    overlap: float
+    overlap: float  # correlation of what the two explain, 1 where the signatures coincide
 
     @property
     def effect(self) -> Effect:
@@ -54,19 +50,13 @@ class Rival:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ConfusionClass:
-    """A found effect with all effects that the run cannot distinguish from it.
+    """A found effect with all effects that the run cannot distinguish from it."""
 
-    Attributes:
-        sized: The named one: most evidence, ties broken by what is usual.
-        rivals: Not distinguished, most likely first.
-        distinguished: Next in line, but clearly less likely.
-        alike: Of a periodic effect every other period not distinguished from the named one;
-            None where there is none.
-    """
-
-    sized: ScaledEffect
-    rivals: tuple[Rival, ...]
-    distinguished: tuple[Rival, ...]
+    sized: ScaledEffect  # the named one: most evidence, ties broken by what is usual
+    rivals: tuple[Rival, ...]  # not distinguished, most likely first
+    distinguished: tuple[Rival, ...]  # next in line, but clearly less likely
+    # of a periodic effect every other period not distinguished from the named one; None where there
+    # is none
     alike: Alike | None = None
 
     @property

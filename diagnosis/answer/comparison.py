@@ -32,20 +32,13 @@ from matstd.twin.units import UM
 
 @dataclass(frozen=True, slots=True)
 class GroupResidual:
-    """Residuals of the touches of one table pose, or on one feature.
+    """Residuals of the touches of one table pose, or on one feature."""
 
-    Attributes:
-        name: `setup a, pose 3`, or the feature.
-        mean: Mean residual, mm.
-        rms: Root mean square residual, mm.
-        normalised: Root mean square over the standard uncertainty.
-    """
-
-    name: str
+    name: str  # `setup a, pose 3`, or the feature
     touches: int
-    mean: float
-    rms: float
-    normalised: float
+    mean: float  # mean residual, mm
+    rms: float  # root mean square residual, mm
+    normalised: float  # root mean square over the standard uncertainty
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -24,36 +24,27 @@ MAX_SIZE_RATIO = 30.0
 
 @dataclass(frozen=True, slots=True)
 class Scanned:
-    """Range in which an inner parameter was looked for, refinement between its points included.
+    """Range in which an inner parameter was looked for, refinement between its points included."""
 
-    Attributes:
-        quantity: `period`, `tau`.
-        unit: As in files: `mm`, `min`.
-    """
-
-    quantity: str
-    unit: str
+    quantity: str  # `period`, `tau`
+    unit: str  # as in files: `mm`, `min`
     low: float
     high: float
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Detectable:
-    """Smallest size of one effect that these touches would have shown.
-
-    Attributes:
-        size: In the base unit of its first parameter, at the median of its inner parameters; None
-            where the model in use imitates the effect.
-        largest: Largest deviation of a touch that an effect of this size causes, mm; None as size.
-        survives: Share of its signature (as squares) that the model cannot imitate.
-        scanned: Where its inner parameters were looked for; outside, nothing is said of it.
-    """
+    """Smallest size of one effect that these touches would have shown."""
 
     effect: Effect
+    # in the base unit of its first parameter, at the median of its inner parameters; None where the
+    # model in use imitates the effect
     size: float | None
     unit: str
+    # largest deviation of a touch that an effect of this size causes, mm; None as size
     largest: float | None
-    survives: float
+    survives: float  # share of its signature (as squares) that the model cannot imitate
+    # where its inner parameters were looked for; outside, nothing is said of it
     scanned: tuple[Scanned, ...] = ()
 
 

@@ -10,31 +10,21 @@ from matstd.diagnosis.next_visit import greedy, separation
 from matstd.twin.model import columns
 from matstd.twin.record import Touches, stacked
 
-PLANNED_TOUCHES = 24
-"""Touches of a plan."""
-
-DEFAULT_PACE = 15.0
-"""Time from touch to touch where the run does not state times, s."""
-
-MIN_SEPARATION = 1.0
-"""Least separation of a useful plan, standard deviations."""
+PLANNED_TOUCHES = 24  # touches of a plan
+DEFAULT_PACE = 15.0  # time from touch to touch where the run does not state times, s
+MIN_SEPARATION = 1.0  # least separation of a useful plan, standard deviations
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Plan:
-    """Touches that distinguish effects.
-
-    Attributes:
-        touches: What to touch, in the order of probing.
-        separation: Expected difference of the two explanations after these touches, in standard
-            deviations; before them it was nearly none.
-        periods_of: The effect whose periods are distinguished; empty for two effects.
-    """
+    """Touches that distinguish effects."""
 
     distinguishes: tuple[str, str]
-    touches: Touches
+    touches: Touches  # what to touch, in the order of probing
+    # expected difference of the two explanations after these touches, in standard deviations;
+    # before them it was nearly none
     separation: float
-    periods_of: str = ""
+    periods_of: str = ""  # the effect whose periods are distinguished; empty for two effects
 
 
 def plan(

@@ -22,64 +22,46 @@ from matstd.twin.model import Effect
 
 @dataclass(frozen=True, slots=True, eq=False)
 class GeometryPart:
-    """What the ordinary model learnt.
+    """What the ordinary model learnt."""
 
-    Attributes:
-        changed: Quantities that differ from the earlier model, or from run to run.
-        beyond: Quantities larger than such a machine has, which hint at the description.
-        hints: Mistakes of the description that explain the run better.
-        left: Scatter of the residual of the geometric model alone, mm.
-    """
-
+    # quantities that differ from the earlier model, or from run to run
     changed: tuple[GeometryRow, ...]
+    # quantities larger than such a machine has, which hint at the description
     beyond: tuple[GeometryRow, ...]
-    hints: tuple[DescriptionFault, ...]
-    left: float
+    hints: tuple[DescriptionFault, ...]  # mistakes of the description that explain the run better
+    left: float  # scatter of the residual of the geometric model alone, mm
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class NamedEffect:
-    """An effect with a name, and its weight in this run.
-
-    Attributes:
-        explained: Root mean square of the scatter that it takes away, mm.
-        share: The same as a share of the mean square beyond repeatability, 0 to 1.
-        runner_up: The next best explanation of what it explains; None for one that the user named,
-            and where no other effect of the library acts on these touches.
-        is_headline: Whether it is certain, larger than its uncertainty, and large enough to name.
-        against_drift: Log odds of an effect that follows a sensor against a smooth drift in time
-            whose cause is not recorded; None for others.
-    """
+    """An effect with a name, and its weight in this run."""
 
     effect: Effect
     p_value: float
-    explained: float
-    share: float
+    explained: float  # root mean square of the scatter that it takes away, mm
+    share: float  # the same as a share of the mean square beyond repeatability, 0 to 1
+    # the next best explanation of what it explains; None for one that the user named, and where no
+    # other effect of the library acts on these touches
     runner_up: Rival | None
+    # whether it is certain, larger than its uncertainty, and large enough to name
     is_headline: bool
+    # log odds of an effect that follows a sensor against a smooth drift in time whose cause is not
+    # recorded; None for others
     against_drift: float | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Remainder:
-    """What is left beside geometry and names.
+    """What is left beside geometry and names."""
 
-    Attributes:
-        scatter: Of the whole residual, mm, degrees of freedom accounted for.
-        size: Of what is beyond repeatability, or of its strongest pattern where no repeats show
-            that, mm.
-        share: The same as a share of the mean square beyond repeatability, 0 to 1.
-        lack_of_fit: Probability by chance of so much more scatter than that of repeats; 1 without.
-        patterns: What it varies with.
-        is_real: Whether it is beyond chance.
-    """
-
-    scatter: float
+    scatter: float  # of the whole residual, mm, degrees of freedom accounted for
+    # of what is beyond repeatability, or of its strongest pattern where no repeats show that, mm
     size: float
-    share: float
+    share: float  # the same as a share of the mean square beyond repeatability, 0 to 1
+    # probability by chance of so much more scatter than that of repeats; 1 without
     lack_of_fit: float
-    patterns: tuple[Structure, ...]
-    is_real: bool
+    patterns: tuple[Structure, ...]  # what it varies with
+    is_real: bool  # whether it is beyond chance
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -33,17 +33,10 @@ from matstd.diagnosis.search import (
 from matstd.twin.library import parse_effect
 from matstd.twin.record import IntArray
 
-MAX_DEPENDENCES = 2
-"""Most patterns that `depends_on` reports, one after the other."""
-
-MAX_TRIED = 6
-"""Library effects, the best ones by themselves, that are tried beside what was found."""
-
-MAX_NAMED = 3
-"""Effects that are named."""
-
-MAX_REPEATED = 6
-"""Touches to repeat: three times each they give twelve degrees of freedom."""
+MAX_DEPENDENCES = 2  # most patterns that `depends_on` reports, one after the other
+MAX_TRIED = 6  # library effects, the best ones by themselves, that are tried beside what was found
+MAX_NAMED = 3  # effects that are named
+MAX_REPEATED = 6  # touches to repeat: three times each they give twelve degrees of freedom
 
 
 def nearest(

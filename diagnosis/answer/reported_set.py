@@ -29,18 +29,15 @@ from matstd.twin.model import Effect, original_of, traits
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ReportedSet:
-    """A set of effects with its tests.
+    """A set of effects with its tests."""
 
-    Attributes:
-        state: Of the search, its members the effects as reported, what explains most first.
-        classes: What each cannot be distinguished from, none of it in the set; in the same order.
-        tests: Of every member with the others in place, by the name of the effect.
-        against_drift: Log odds of those that follow a driver against one that was not recorded.
-    """
-
+    # of the search, its members the effects as reported, what explains most first
     state: SearchState
+    # what each cannot be distinguished from, none of it in the set; in the same order
     classes: tuple[ConfusionClass, ...]
+    # of every member with the others in place, by the name of the effect
     tests: Mapping[str, Verified]
+    # log odds of those that follow a driver against one that was not recorded
     against_drift: Mapping[str, float]
 
     @property

@@ -63,11 +63,8 @@ from matstd.twin.model import Effect, Model, traits
 from matstd.twin.numbers import rms
 from matstd.twin.record import Run, Touches, with_commanded, without_copies
 
-MAX_LISTED = 25
-"""Most candidates that are listed, best first."""
-
-MAX_PERIODS_PLANNED = 8
-"""Most periods that a plan of touches distinguishes, the longest ones."""
+MAX_LISTED = 25  # most candidates that are listed, best first
+MAX_PERIODS_PLANNED = 8  # most periods that a plan of touches distinguishes, the longest ones
 
 
 @one_blas_thread()

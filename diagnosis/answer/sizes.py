@@ -29,17 +29,10 @@ PRIOR_FACTOR = 10.0
 """Factor on the stated distributions of the machine's ordinary errors: at the tenth of the stated
 weight no error of a machine within them, or a few times beyond, draws a size noticeably."""
 
-MAX_STEPS = 4
-"""Most steps of Gauss and Newton; the inner parameters come refined."""
-
-SETTLED_STEP = 0.02
-"""Step over standard uncertainty from which an inner parameter is settled."""
-
-MAX_GRID_STEP = 0.5
-"""In distances of the grid's points: the tangent holds no farther."""
-
-MAX_INSTANTS = 60
-"""Instants to either side that are weighed for an effect that begins at one."""
+MAX_STEPS = 4  # most steps of Gauss and Newton; the inner parameters come refined
+SETTLED_STEP = 0.02  # step over standard uncertainty from which an inner parameter is settled
+MAX_GRID_STEP = 0.5  # in distances of the grid's points: the tangent holds no farther
+MAX_INSTANTS = 60  # instants to either side that are weighed for an effect that begins at one
 
 
 def sizes(

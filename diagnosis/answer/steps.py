@@ -22,26 +22,19 @@ from matstd.twin.errors import DesignError
 from matstd.twin.frames import Array
 from matstd.twin.model import Effect
 
-EXPANSION = "um_per_m_K"
-"""Unit of a coefficient of expansion, as it is reported."""
+EXPANSION = "um_per_m_K"  # unit of a coefficient of expansion, as it is reported
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Step:
-    """The model with one effect more than the step before; the first has none.
+    """The model with one effect more than the step before; the first has none."""
 
-    Attributes:
-        effect: What was added, with its inner parameters; None for the starting model.
-        p_value: Probability by chance, grid and number of candidates paid for; 1 for the first.
-        reported: Its parameters as a user reads them, from the last fit.
-        confusion: What it cannot be distinguished from; None for the first, and for effects that
-            were named by the user.
-    """
-
-    effect: Effect | None
+    effect: Effect | None  # what was added, with its inner parameters; None for the starting model
     fit: Fit
-    p_value: float
-    reported: tuple[Reported, ...]
+    p_value: float  # probability by chance, grid and number of candidates paid for; 1 for the first
+    reported: tuple[Reported, ...]  # its parameters as a user reads them, from the last fit
+    # what it cannot be distinguished from; None for the first, and for effects that were named by
+    # the user
     confusion: ConfusionClass | None
 
     @property

@@ -32,20 +32,16 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class RunErrors:
-    """How well one of several runs is known, mm.
-
-    Attributes:
-        rms: Root mean square residual of those that were fitted; None if the run was held out.
-        test_rms: Plain error of its poses, each predicted by all others; None for a held-out run.
-        left_out: Plain error of the whole run, its set-ups fitted, the machine predicted by the
-            other runs: as in the run before, of the first run as in the one after. None where no
-            other run was fitted.
-    """
+    """How well one of several runs is known, mm."""
 
     name: str
     touches: int
+    # root mean square residual of those that were fitted; None if the run was held out
     rms: float | None
+    # plain error of its poses, each predicted by all others; None for a held-out run
     test_rms: float | None
+    # plain error of the whole run, its set-ups fitted, the machine predicted by the other runs: as
+    # in the run before, of the first run as in the one after. None where no other run was fitted
     left_out: float | None
 
     @property
@@ -56,35 +52,26 @@ class RunErrors:
 
 @dataclass(frozen=True, slots=True)
 class SingleChange:
-    """What changed into a run, if nothing else of the geometry did.
-
-    Attributes:
-        unit: Of its parameter, "mm" or "rad".
-    """
+    """What changed into a run, if nothing else of the geometry did."""
 
     effect: Effect
-    unit: str
+    unit: str  # of its parameter, "mm" or "rad"
     size: Estimate
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Trend:
-    """What changed between several runs of one machine, and what did not.
-
-    Attributes:
-        changed: Runs, by number, whose geometry differs from that of the run before; 0 stands for
-            the first beside the model that the diagnosis began with.
-        rows: The geometry with its course, every run by itself.
-        pooled: The same with runs between which nothing changed as one: what did change is known
-            better by it.
-        alone: By run, the one change that is beyond chance if nothing else changed, where none is
-            while everything may.
-    """
+    """What changed between several runs of one machine, and what did not."""
 
     runs: tuple[RunErrors, ...]
+    # runs, by number, whose geometry differs from that of the run before; 0 stands for the first
+    # beside the model that the diagnosis began with
     changed: tuple[int, ...]
-    rows: tuple[GeometryRow, ...]
+    rows: tuple[GeometryRow, ...]  # the geometry with its course, every run by itself
+    # the same with runs between which nothing changed as one: what did change is known better by it
     pooled: tuple[GeometryRow, ...]
+    # by run, the one change that is beyond chance if nothing else changed, where none is while
+    # everything may
     alone: Mapping[int, SingleChange] = field(default_factory=dict)
 
     def known_best(self, run: int) -> tuple[GeometryRow, ...]:

@@ -48,17 +48,11 @@ class Candidate:
 
 @dataclass(frozen=True, slots=True)
 class Offer:
-    """An effect close to the remaining residual, offered to be added by hand.
+    """An effect close to the remaining residual, offered to be added by hand."""
 
-    Attributes:
-        effect: Its name, for `--add`.
-        p_value: Probability by chance of so large a fall beside what was found.
-        test_rms: Error of held-out touches with it, mm.
-    """
-
-    effect: str
-    p_value: float
-    test_rms: float
+    effect: str  # its name, for `--add`
+    p_value: float  # probability by chance of so large a fall beside what was found
+    test_rms: float  # error of held-out touches with it, mm
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -17,8 +17,7 @@ from matstd.diagnosis.geometry import Estimate
 from matstd.twin.frames import Array
 from matstd.twin.numbers import rms
 
-SIGMAS_OF_LIMITS = 3.0
-"""Half width of the limits in standard deviations."""
+SIGMAS_OF_LIMITS = 3.0  # half width of the limits in standard deviations
 
 MEDIAN_RANGE = 0.9539
 """Median of the difference of two values over their standard deviation, ``sqrt(2) * 0.6745``. The
@@ -48,28 +47,17 @@ class Segment:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ControlChart:
-    """The course of one quantity.
-
-    Attributes:
-        rows: Numbers of the occasions that determine it, (n,).
-        values: One estimate an occasion.
-        stated: Root mean square of their standard uncertainties.
-        scatter: Standard deviation from the moving ranges; None of too few.
-        widening: Scatter over stated uncertainty of all quantities together, at least 1.
-        segments: Between steps; one of a quantity without.
-        course: Steps or drift.
-        beyond: Places in `rows` of values beyond the limits.
-    """
+    """The course of one quantity."""
 
     of: Charted
-    rows: tuple[int, ...]
-    values: tuple[Estimate, ...]
-    stated: float
-    scatter: float | None
-    widening: float
-    segments: tuple[Segment, ...]
-    course: Course
-    beyond: tuple[int, ...]
+    rows: tuple[int, ...]  # numbers of the occasions that determine it, (n,)
+    values: tuple[Estimate, ...]  # one estimate an occasion
+    stated: float  # root mean square of their standard uncertainties
+    scatter: float | None  # standard deviation from the moving ranges; None of too few
+    widening: float  # scatter over stated uncertainty of all quantities together, at least 1
+    segments: tuple[Segment, ...]  # between steps; one of a quantity without
+    course: Course  # steps or drift
+    beyond: tuple[int, ...]  # places in `rows` of values beyond the limits
 
     @property
     def sigma(self) -> float:

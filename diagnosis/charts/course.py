@@ -24,34 +24,21 @@ ALPHA = 0.01
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """A value that changed between two occasions.
+    """A value that changed between two occasions."""
 
-    Attributes:
-        after: Occasion, by number, from which on the new value holds.
-        size: New less old value.
-        date: When it changed, of all intervals by their likelihood, days.
-        u_date: Its standard uncertainty: a date within an interval is as likely as any other.
-        p_value: Of a step of this size by chance, over all places and quantities.
-    """
-
-    after: int
-    size: Estimate
-    date: float
-    u_date: float
-    p_value: float
+    after: int  # occasion, by number, from which on the new value holds
+    size: Estimate  # new less old value
+    date: float  # when it changed, of all intervals by their likelihood, days
+    u_date: float  # its standard uncertainty: a date within an interval is as likely as any other
+    p_value: float  # of a step of this size by chance, over all places and quantities
 
 
 @dataclass(frozen=True, slots=True)
 class Drift:
-    """A value that changes steadily.
+    """A value that changes steadily."""
 
-    Attributes:
-        rate: Change a day.
-        p_value: Of such a rate by chance, over all quantities.
-    """
-
-    rate: Estimate
-    p_value: float
+    rate: Estimate  # change a day
+    p_value: float  # of such a rate by chance, over all quantities
 
 
 @dataclass(frozen=True, slots=True)

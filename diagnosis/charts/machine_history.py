@@ -21,21 +21,13 @@ SAME_FEATURE_WITHIN = 1.0
 
 @dataclass(frozen=True, eq=False)
 class History:
-    """A machine over several occasions.
+    """A machine over several occasions."""
 
-    Attributes:
-        occasions: In the order of time.
-        is_dated: Whether every occasion has a date of its own; else they are counted.
-        days: Since the first occasion, or their numbers, (n,).
-        widening: Scatter over stated uncertainty of all quantities together, at least 1.
-        charts: Those that changed first, in the order of their significance.
-    """
-
-    occasions: tuple[Occasion, ...]
-    is_dated: bool
-    days: Array
-    widening: float
-    charts: tuple[ControlChart, ...]
+    occasions: tuple[Occasion, ...]  # in the order of time
+    is_dated: bool  # whether every occasion has a date of its own; else they are counted
+    days: Array  # since the first occasion, or their numbers, (n,)
+    widening: float  # scatter over stated uncertainty of all quantities together, at least 1
+    charts: tuple[ControlChart, ...]  # those that changed first, in the order of their significance
 
     @property
     def changed(self) -> tuple[ControlChart, ...]:

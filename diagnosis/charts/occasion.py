@@ -28,8 +28,7 @@ from matstd.twin.model import Effect, Model
 from matstd.twin.numbers import rms_length
 from matstd.twin.record import Run, Touches, with_commanded, without_copies
 
-POSES = 200
-"""Poses of the volumetric error; the same of every run, so that they choose no change."""
+POSES = 200  # poses of the volumetric error; the same of every run, so that they choose no change
 
 
 class Overall(Enum):
@@ -57,39 +56,26 @@ GEOMETRY = (
 
 @dataclass(frozen=True, slots=True)
 class Charted:
-    """What a chart is of.
-
-    Attributes:
-        symbol: Its ISO 230-1 name, or the effect; "" of an overall figure.
-        axes: The axis, or the two of a squareness, the reference first.
-        unit: "mm", "rad", or "1" for a scale.
-    """
+    """What a chart is of."""
 
     quantity: Quantity | Overall
-    symbol: str = ""
-    axes: tuple[str, ...] = ()
-    unit: str = "mm"
+    symbol: str = ""  # its ISO 230-1 name, or the effect; "" of an overall figure
+    axes: tuple[str, ...] = ()  # the axis, or the two of a squareness, the reference first
+    unit: str = "mm"  # "mm", "rad", or "1" for a scale
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Occasion:
-    """One measurement of a machine.
-
-    Attributes:
-        date: When; None where it is not known.
-        standard: Stamp of the standard; "" where it is not recorded.
-        prints: Fingerprints of the measurements.
-        places: Least and largest coordinates of the touched points by feature, (2, 3).
-        values: What it determines.
-    """
+    """One measurement of a machine."""
 
     name: str
-    date: datetime | None
+    date: datetime | None  # when; None where it is not known
     chain: Chain
-    standard: str
-    prints: tuple[str, ...]
+    standard: str  # stamp of the standard; "" where it is not recorded
+    prints: tuple[str, ...]  # fingerprints of the measurements
     touches: int
-    values: Mapping[Charted, Estimate]
+    values: Mapping[Charted, Estimate]  # what it determines
+    # least and largest coordinates of the touched points by feature, (2, 3)
     places: Mapping[str, Array] = field(default_factory=dict)
 
 

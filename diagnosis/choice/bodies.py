@@ -43,17 +43,11 @@ REFINEMENT_ROUNDS = 3
 
 @dataclass(frozen=True, slots=True)
 class _Family:
-    """All that one component error may follow.
+    """All that one component error may follow."""
 
-    Attributes:
-        effects: At once and at every time constant.
-        at_once: Number of the effect at once, by drive; the speed has none.
-        lags: Numbers of the lags, by drive.
-    """
-
-    effects: tuple[Effect, ...]
-    at_once: dict[str, int]
-    lags: dict[str, IntArray]
+    effects: tuple[Effect, ...]  # at once and at every time constant
+    at_once: dict[str, int]  # number of the effect at once, by drive; the speed has none
+    lags: dict[str, IntArray]  # numbers of the lags, by drive
 
 
 def bodies(

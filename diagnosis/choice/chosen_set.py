@@ -22,8 +22,7 @@ from matstd.diagnosis.residual import PatternTests, find_structure
 from matstd.diagnosis.search import DiagnosisTask, Library, Search, SearchState
 from matstd.twin.model import Effect, columns, traits
 
-MAX_LISTED_DRIVES = 6
-"""Most drives of a field that are reported."""
+MAX_LISTED_DRIVES = 6  # most drives of a field that are reported
 
 MIN_INDEPENDENT = 30.0
 """Least number of independent observations assumed for a run with a slow residual. A memory as long

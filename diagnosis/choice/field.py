@@ -28,15 +28,10 @@ NOISE_PASSES = 2
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Block:
-    """Inner products of one block: columns of model and field, then the deviation; K + 1 of them.
+    """Inner products of one block: columns of model and field, then the deviation; K + 1."""
 
-    Attributes:
-        weighted: Over the noise, (K + 1, K + 1).
-        plain: In mm, (K + 1, K + 1).
-    """
-
-    weighted: Array
-    plain: Array
+    weighted: Array  # over the noise, (K + 1, K + 1)
+    plain: Array  # in mm, (K + 1, K + 1)
     rows: int
 
 

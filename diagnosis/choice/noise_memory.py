@@ -19,8 +19,7 @@ from matstd.diagnosis.search import WHOLE_BELOW, DiagnosisTask, SearchState, sea
 from matstd.twin.model import Effect
 from matstd.twin.record import Run
 
-CHOSEN_ROWS = 3000
-"""Rows of the choice: a wave of an eighth of the noise is found in so many."""
+CHOSEN_ROWS = 3000  # rows of the choice: a wave of an eighth of the noise is found in so many
 
 
 def memory_of(fit: Fit) -> tuple[Memory, float]:

@@ -35,8 +35,7 @@ TWO_TIMES, FIELD = "two time constants", "thermal field"
 """Ways, the simplest first; an unrecorded driver is a smooth course in time beside what was found,
 and follows no sensor."""
 
-Way = Callable[[DiagnosisTask], tuple[ScaledEffect, ...]]
-"""The set to which a way leads in a task."""
+Way = Callable[[DiagnosisTask], tuple[ScaledEffect, ...]]  # the set to which a way leads in a task
 
 MAX_ROWS = 4000
 """Most rows used to judge ways of choosing, each of which is followed once for every block."""
@@ -44,20 +43,14 @@ MAX_ROWS = 4000
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ChoiceRule:
-    """A way of choosing effects, judged.
+    """A way of choosing effects, judged."""
 
-    Attributes:
-        name: `nothing`, `single effects`, `unrecorded driver`, `two time constants`,
-            `thermal field`.
-        errors: Plain root mean square error of every block left out, the choice made anew each
-            time, (B,), mm.
-        rows: Of every block, (B,).
-    """
-
+    # `nothing`, `single effects`, `unrecorded driver`, `two time constants`, `thermal field`
     name: str
     effects: tuple[ScaledEffect, ...]
+    # plain root mean square error of every block left out, the choice made anew each time, (B,), mm
     errors: Array
-    rows: Array
+    rows: Array  # of every block, (B,)
 
     @property
     def error(self) -> float:
@@ -67,18 +60,12 @@ class ChoiceRule:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Choice:
-    """The result of a choice by prediction.
+    """The result of a choice by prediction."""
 
-    Attributes:
-        rules: All that were judged, the simplest first.
-        blocks: Number of blocks that were left out, one after the other.
-        memory: Of what is left with it; None where it is white.
-    """
-
-    rules: tuple[ChoiceRule, ...]
+    rules: tuple[ChoiceRule, ...]  # all that were judged, the simplest first
     best: ChoiceRule
-    blocks: int
-    memory: Memory | None
+    blocks: int  # number of blocks that were left out, one after the other
+    memory: Memory | None  # of what is left with it; None where it is white
 
 
 def chosen_by_prediction(

@@ -7,8 +7,7 @@ from matstd.diagnosis.drift.record import DriftRecord, is_speed
 from matstd.twin.frames import Array
 from matstd.twin.units import HOUR
 
-MAX_LEAD = 2.0 * HOUR
-"""Longest lead that is looked for, s."""
+MAX_LEAD = 2.0 * HOUR  # longest lead that is looked for, s
 
 MAX_SHARE_LEFT = 0.8
 """Residual of the changes with the lead over the residual without it, below which the lead counts.

@@ -12,17 +12,11 @@ from matstd.twin.frames import Array
 
 @dataclass(frozen=True, eq=False)
 class Constant:
-    """The mean of the training part.
+    """The mean of the training part."""
 
-    Attributes:
-        value: (K,), base units.
-        residual: Standard deviation of what is left in training, (K,).
-        memory: Time in which what is left forgets itself, s.
-    """
-
-    value: Array
-    residual: Array
-    memory: float
+    value: Array  # (K,), base units
+    residual: Array  # standard deviation of what is left in training, (K,)
+    memory: float  # time in which what is left forgets itself, s
 
     def predicted(self, record: DriftRecord) -> Array:
         """The same everywhere, (N, K)."""

@@ -21,8 +21,7 @@ from matstd.twin.text import csv_text
 from matstd.twin.versions import versions
 
 FORMAT = "matstd-thermal/1"
-SHOWN = {"mm": "um", "rad": "urad"}
-"""Unit of a component in the file."""
+SHOWN = {"mm": "um", "rad": "urad"}  # unit of a component in the file
 
 _LAWS: dict[str, type] = {"linear": LinearLaw, "constant": Constant}
 
@@ -87,21 +86,15 @@ def _stated(law: Law) -> dict[str, Any]:
 
 @dataclass(frozen=True, eq=False)
 class SavedLaw:
-    """The chosen law of an earlier comparison.
-
-    Attributes:
-        factor: By which left-out blocks missed more than residual and leverage say, (K,).
-        units: Of each, "mm" or "rad".
-        step: Of its rows, s.
-    """
+    """The chosen law of an earlier comparison."""
 
     name: str
     law: Law
-    factor: Array
+    factor: Array  # by which left-out blocks missed more than residual and leverage say, (K,)
     drives: tuple[str, ...]
     components: tuple[str, ...]
-    units: tuple[str, ...]
-    step: float
+    units: tuple[str, ...]  # of each, "mm" or "rad"
+    step: float  # of its rows, s
 
     def judged(self) -> Judged:
         """As one of the laws of a comparison, nothing known of its errors but the factor."""

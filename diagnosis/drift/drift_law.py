@@ -32,18 +32,13 @@ _BOUND = re.compile(r"\s*([^:@]+?)\s*:\s*(-?)\s*([A-Z0-9]+)\s*(?:@([^:]+):([^:]+
 
 @dataclass(frozen=True)
 class Bound:
-    """One output of a law as a component error: the same everywhere, or growing along the axis.
-
-    Attributes:
-        sign: -1 where the column has the opposite sense.
-        zero: Reading at which nothing of it is felt, mm or rad.
-        whole: Reading at which all of it is felt; equal to `zero` for the same everywhere.
-    """
+    """One output of a law as a component error: the same everywhere, or growing along the axis."""
 
     column: str
     symbol: Symbol
-    sign: float = 1.0
-    zero: float = 0.0
+    sign: float = 1.0  # -1 where the column has the opposite sense
+    zero: float = 0.0  # reading at which nothing of it is felt, mm or rad
+    # reading at which all of it is felt; equal to `zero` for the same everywhere
     whole: float = 0.0
 
     @property
@@ -63,18 +58,13 @@ class Bound:
 
 @dataclass(frozen=True, eq=False)
 class Replay:
-    """A law at some touches.
+    """A law at some touches."""
 
-    Attributes:
-        predicted: Every column, (N, K), base units.
-        rows: By how much each unknown of the law changes a column, in units of the standard
-            deviation of what it leaves, (N, M); the unknowns are independent, of variance one.
-        elapsed: Since the record began, (N,), s.
-    """
-
-    predicted: Array
+    predicted: Array  # every column, (N, K), base units
+    # by how much each unknown of the law changes a column, in units of the standard deviation of
+    # what it leaves, (N, M); the unknowns are independent, of variance one
     rows: Array
-    elapsed: Array
+    elapsed: Array  # since the record began, (N,), s
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,18 +78,15 @@ class DriftLaw:
     touches must be the whole run: a machine settled at the temperatures of its first record, cold
     where speeds are concerned at time zero.
 
-    Attributes:
-        path: Of the law, as it was written.
-        has_unknowns: Whether what is not known of the law are parameters too. A model that is
-            estimated from touches has only the law, 1 if it is right.
-
     Reference:
         D-MT paper, eq. (4), and 2.3; uncertainty as of `matstd thermal`.
     """
 
-    path: str
+    path: str  # of the law, as it was written
     saved: SavedLaw
     bound: tuple[Bound, ...]
+    # whether what is not known of the law are parameters too. A model that is estimated from
+    # touches has only the law, 1 if it is right
     has_unknowns: bool = False
     _known: WeakKeyDictionary[Touches, Replay] = field(default_factory=WeakKeyDictionary)
 

@@ -14,8 +14,7 @@ from matstd.twin.compute import Progress
 from matstd.twin.frames import Array
 from matstd.twin.numbers import rms, rms_of_columns
 
-BLOCKS = 4
-"""Parts of the training hours that are left out in turn: each must hold a load cycle."""
+BLOCKS = 4  # parts of the training hours that are left out in turn: each must hold a load cycle
 
 
 class Law(Protocol):
@@ -41,23 +40,15 @@ Fits = Callable[[DriftRecord, Sequence[IntArray]], Law]
 
 @dataclass(frozen=True, eq=False)
 class Judged:
-    """One law and how it did, root mean squares by component, (K,), base units.
-
-    Attributes:
-        law: Fitted to all of the training part.
-        one_step: In the held-out hours, the displacement of the row before given.
-        left_out: Free run in blocks of the training part that neither fit nor choice had seen.
-        noisy: The same with noise on the temperatures; None where none was asked for.
-        factor: By which left-out blocks miss more than residual and leverage say.
-    """
+    """One law and how it did, root mean squares by component, (K,), base units."""
 
     name: str
-    law: Law
-    one_step: Array
-    left_out: Array
+    law: Law  # fitted to all of the training part
+    one_step: Array  # in the held-out hours, the displacement of the row before given
+    left_out: Array  # free run in blocks of the training part that neither fit nor choice had seen
     free_run: Array
-    noisy: Array | None
-    factor: Array
+    noisy: Array | None  # the same with noise on the temperatures; None where none was asked for
+    factor: Array  # by which left-out blocks miss more than residual and leverage say
 
     def total(self, values: Array, record: DriftRecord) -> float:
         """Over all components, in micrometres or microradians."""

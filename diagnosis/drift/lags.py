@@ -16,13 +16,9 @@ them to 5 % of a step.
 
 @dataclass(frozen=True)
 class Lagged:
-    """Drives, each at once (time constant zero) or with a lag.
+    """Drives, each at once (time constant zero) or with a lag."""
 
-    Attributes:
-        places: Drive and time constant, s, of every column.
-    """
-
-    places: tuple[tuple[str, float], ...]
+    places: tuple[tuple[str, float], ...]  # drive and time constant, s, of every column
 
     def __call__(self, record: DriftRecord) -> Array:
         """What has followed of every drive, (N, M)."""

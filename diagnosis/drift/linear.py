@@ -12,36 +12,23 @@ from matstd.twin.frames import Array
 WEIGHTS = 10.0 ** np.arange(-6.0, 1.1, 0.5)
 """Of ridge regression, in variances of a standardised column."""
 
-MIN_RELATIVE_SPREAD = 1e-9
-"""A column whose spread is less than this of its size is constant."""
+MIN_RELATIVE_SPREAD = 1e-9  # a column whose spread is less than this of its size is constant
 
 
 @dataclass(frozen=True, eq=False)
 class LinearLaw:
-    """``y = intercept + (X - mean)/scale @ coefficients``, and how well it is known.
+    """``y = intercept + (X - mean)/scale @ coefficients``, and how well it is known."""
 
-    Attributes:
-        inputs: Columns X of a record.
-        mean: Of the columns in training, (M,).
-        scale: Their standard deviations, (M,).
-        intercept: (K,), base units.
-        coefficients: (M, K).
-        weight: Of the ridge.
-        covariance: Of intercept and coefficients per unit variance of one independent residual,
-            (1 + M, 1 + M).
-        residual: Standard deviation of what is left in training, (K,).
-        memory: Time in which what is left forgets itself, s.
-    """
-
-    inputs: Lagged
-    mean: Array
-    scale: Array
-    intercept: Array
-    coefficients: Array
-    weight: float
+    inputs: Lagged  # columns X of a record
+    mean: Array  # of the columns in training, (M,)
+    scale: Array  # their standard deviations, (M,)
+    intercept: Array  # (K,), base units
+    coefficients: Array  # (M, K)
+    weight: float  # of the ridge
+    # of intercept and coefficients per unit variance of one independent residual, (1 + M, 1 + M)
     covariance: Array
-    residual: Array
-    memory: float
+    residual: Array  # standard deviation of what is left in training, (K,)
+    memory: float  # time in which what is left forgets itself, s
 
     def basis(self, record: DriftRecord) -> Array:
         """One and the standardised columns, (N, 1 + M)."""
@@ -59,19 +46,12 @@ class LinearLaw:
 
 @dataclass(frozen=True, eq=False)
 class Sums:
-    """Sums of products of standardised columns, by block: each is predicted from the others.
+    """Sums of products of standardised columns, by block: each is predicted from the others."""
 
-    Attributes:
-        gram: (B, 1 + M, 1 + M).
-        cross: With the components in units of their size, (B, 1 + M, K).
-        square: Of the components, (B, K).
-        count: Rows of each block, (B,).
-    """
-
-    gram: Array
-    cross: Array
-    square: Array
-    count: Array
+    gram: Array  # (B, 1 + M, 1 + M)
+    cross: Array  # with the components in units of their size, (B, 1 + M, K)
+    square: Array  # of the components, (B, K)
+    count: Array  # rows of each block, (B,)
 
     def left_out(self, weight: float) -> Array:
         """Mean squared error of every block, predicted from the others, (B,).

@@ -25,11 +25,8 @@ DISPLACEMENTS = {
 }
 """Endings of columns of displacements, their base unit, and what one of it is in that."""
 
-MAX_BRIDGED = 5.0 * MINUTE
-"""Longest time without a reading that is bridged by a straight line, s."""
-
-MIN_STRETCH = 20
-"""Steps of the shortest stretch between two gaps that is used."""
+MAX_BRIDGED = 5.0 * MINUTE  # longest time without a reading that is bridged by a straight line, s
+MIN_STRETCH = 20  # steps of the shortest stretch between two gaps that is used
 
 TYPES = "T_name_degC or name_degC, name_rpm, V_name_unit; name_um, _mm, _urad, _mrad, _arcsec"
 

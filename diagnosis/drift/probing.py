@@ -26,17 +26,11 @@ change of load half-way, 1 to 4 days change the residual by less than a tenth.""
 
 @dataclass(frozen=True, eq=False)
 class ProbedPrediction:
-    """A drift as it is predicted with the probings up to every row.
+    """A drift as it is predicted with the probings up to every row."""
 
-    Attributes:
-        predicted: (N, K), base units.
-        u: Standard uncertainty, (N, K).
-        offset_only: What holding the last probed value does, no law at all, (N, K).
-    """
-
-    predicted: Array
-    u: Array
-    offset_only: Array
+    predicted: Array  # (N, K), base units
+    u: Array  # standard uncertainty, (N, K)
+    offset_only: Array  # what holding the last probed value does, no law at all, (N, K)
 
 
 def predict_with_probings(

@@ -18,30 +18,19 @@ SIZE = {"mm": UM, "rad": URAD}
 
 @dataclass(frozen=True, eq=False)
 class DriftRecord:
-    """Temperatures, speeds and displacements of one or several logs at equal steps.
+    """Temperatures, speeds and displacements of one or several logs at equal steps."""
 
-    Attributes:
-        time: Of every row since the start of its log, (N,), s.
-        stretch: Number of the stretch without a gap that a row belongs to, (N,), rising.
-        step: Between rows of a stretch, s.
-        drive: Their values, (N, D); degC, 1/min, or the unit of an own column.
-        components: Names of the displacements, without unit.
-        units: Of each, "mm" or "rad".
-        displacement: (N, K), base units.
-        remarks: What a reader noticed.
-        zeros: Number of the zero that the displacement of a row counts from, (N,); None where all
-            count from one.
-    """
-
-    time: Array
-    stretch: IntArray
-    step: float
+    time: Array  # of every row since the start of its log, (N,), s
+    stretch: IntArray  # number of the stretch without a gap that a row belongs to, (N,), rising
+    step: float  # between rows of a stretch, s
     drives: tuple[str, ...]
-    drive: Array
-    components: tuple[str, ...]
-    units: tuple[str, ...]
-    displacement: Array
-    remarks: tuple[str, ...] = ()
+    drive: Array  # their values, (N, D); degC, 1/min, or the unit of an own column
+    components: tuple[str, ...]  # names of the displacements, without unit
+    units: tuple[str, ...]  # of each, "mm" or "rad"
+    displacement: Array  # (N, K), base units
+    remarks: tuple[str, ...] = ()  # what a reader noticed
+    # number of the zero that the displacement of a row counts from, (N,); None where all count from
+    # one
     zeros: IntArray | None = None
 
     def __len__(self) -> int:

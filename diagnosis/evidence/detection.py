@@ -18,8 +18,7 @@ from matstd.twin.frames import Array
 REPRODUCED = 0.93**2
 """Share of a signature, as squares, that an effect must reproduce to be as right an answer."""
 
-POINTS_OF_GRID = 5
-"""Points of the grid of a rival that are compared."""
+POINTS_OF_GRID = 5  # points of the grid of a rival that are compared
 
 LENGTHS = np.geomspace(0.5, 12.0, 48)
 """Squared lengths that are tried, over the threshold of the effect by itself."""

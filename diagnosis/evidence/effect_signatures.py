@@ -24,11 +24,8 @@ IntArray = NDArray[np.int64]
 Progress = Callable[[float, str], None]
 """Called with the share done and what is being done; only the command line shows it."""
 
-BLOCK = 256
-"""Columns that are projected at a time."""
-
-MAX_GRID_POINTS = 1000
-"""Most points of the grid of one effect's inner parameters."""
+BLOCK = 256  # columns that are projected at a time
+MAX_GRID_POINTS = 1000  # most points of the grid of one effect's inner parameters
 
 
 def quiet(share: float, doing: str) -> None:
@@ -37,33 +34,21 @@ def quiet(share: float, doing: str) -> None:
 
 @dataclass(frozen=True, eq=False)
 class ResidualSpace:
-    """What a fit leaves: the projection on it, and the residual, data and prior rows together.
+    """What a fit leaves: the projection on it, and the residual, data and prior rows together."""
 
-    Attributes:
-        touches: All of the run, since some effects remember what went before.
-        used: Which of them the fit uses, N of them.
-        u: Their standard uncertainty as found, (N,), mm.
-        Q: Basis of the model, data and prior rows, (N + P, P).
-        residual: Data and prior rows, (N + P,).
-        dof: Degrees of freedom left.
-        groups: Rows of every table pose.
-        whitener: Filter of the noise's memory; None for white noise.
-        stated: Squared residual that the stated size of the noise counts for, as `PRIOR_DOF`
-            observations, in units of the found one.
-        independent: Number of independent observations; None for one a touch.
-    """
-
-    touches: Touches
-    used: BoolArray
-    u: Array
-    Q: Array
-    residual: Array
-    dof: float
-    groups: tuple[IntArray, ...]
+    touches: Touches  # all of the run, since some effects remember what went before
+    used: BoolArray  # which of them the fit uses, N of them
+    u: Array  # their standard uncertainty as found, (N,), mm
+    Q: Array  # basis of the model, data and prior rows, (N + P, P)
+    residual: Array  # data and prior rows, (N + P,)
+    dof: float  # degrees of freedom left
+    groups: tuple[IntArray, ...]  # rows of every table pose
     gross: BoolArray
-    whitener: Whitener | None = None
+    whitener: Whitener | None = None  # filter of the noise's memory; None for white noise
+    # squared residual that the stated size of the noise counts for, as `PRIOR_DOF` observations, in
+    # units of the found one
     stated: float = PRIOR_DOF
-    independent: float | None = None
+    independent: float | None = None  # number of independent observations; None for one a touch
 
     @classmethod
     def of(cls, fit: Fit) -> "ResidualSpace":
@@ -131,14 +116,10 @@ class ResidualSpace:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ScaledEffect:
-    """An effect, and how many times larger than usual it is taken to be.
-
-    Attributes:
-        scale: Factor on the prior standard deviations of its parameters.
-    """
+    """An effect, and how many times larger than usual it is taken to be."""
 
     effect: Effect
-    scale: float = 1.0
+    scale: float = 1.0  # factor on the prior standard deviations of its parameters
 
 
 def projected(complement: ResidualSpace, sized: Sequence[ScaledEffect]) -> Array:
@@ -162,27 +143,17 @@ def tuned_variants(effect: Effect, touches: Touches) -> list[Effect]:
 
 @dataclass(frozen=True, eq=False)
 class Signatures:
-    """Projected columns of many variants, side by side.
-
-    Attributes:
-        variants: Effects, one for every point of every grid.
-        owner: Index of the candidate that a variant belongs to, (V,).
-        C: Projected, whitened, scaled columns, (N + P, M).
-        start: First column of every variant, (V + 1,).
-        size: Norm of every column before the projection, (M,).
-        tries: Points of its grid that every candidate was tried at, here or in a screening.
-        tried: Number of candidates that were tried altogether.
-    """
+    """Projected columns of many variants, side by side."""
 
     complement: ResidualSpace
-    variants: tuple[Effect, ...]
-    owner: IntArray
+    variants: tuple[Effect, ...]  # effects, one for every point of every grid
+    owner: IntArray  # index of the candidate that a variant belongs to, (V,)
     names: tuple[str, ...]
-    C: Array
-    start: IntArray
-    size: Array
-    tries: IntArray
-    tried: int
+    C: Array  # projected, whitened, scaled columns, (N + P, M)
+    start: IntArray  # first column of every variant, (V + 1,)
+    size: Array  # norm of every column before the projection, (M,)
+    tries: IntArray  # points of its grid that every candidate was tried at, here or in a screening
+    tried: int  # number of candidates that were tried altogether
 
     @cached_property
     def width(self) -> IntArray:
@@ -248,16 +219,11 @@ def _inner(C: Array, left: IntArray, right: IntArray) -> Array:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Grid:
-    """A candidate at the points of its grid.
-
-    Attributes:
-        variants: At every point that is kept.
-        tries: Points that were tried, kept or not.
-    """
+    """A candidate at the points of its grid."""
 
     effect: Effect
-    variants: tuple[Effect, ...]
-    tries: int
+    variants: tuple[Effect, ...]  # at every point that is kept
+    tries: int  # points that were tried, kept or not
 
 
 def blocks(variants: Sequence[Effect]) -> list[tuple[int, int]]:

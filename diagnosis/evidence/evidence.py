@@ -31,14 +31,10 @@ ROUNDING = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class EffectSet:
-    """A model with a set of further effects in it.
-
-    Attributes:
-        A: Their projected columns, (N + P, K); K may be 0.
-    """
+    """A model with a set of further effects in it."""
 
     complement: ResidualSpace
-    A: Array
+    A: Array  # their projected columns, (N + P, K); K may be 0
 
     @cached_property
     def _factor(self) -> Array:
@@ -157,22 +153,15 @@ def log_evidence(
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Scores:
-    """What every variant would do if it came into a set of effects.
+    """What every variant would do if it came into a set of effects."""
 
-    Attributes:
-        free_drop: Fall of the squared residual over visible directions, prior aside, (V,).
-        freedom: Number of those directions, (V,).
-        evidence: Log evidence of the set with the variant, (V,); none where `MIN_OWN_SHARE` share
-            or less of its signature is its own.
-        scale: Factor on its usual size that gives most evidence, (V,).
-        p: Probability of such a fall by chance, one variant, no correction, (V,).
-    """
-
-    free_drop: Array
-    freedom: Array
+    free_drop: Array  # fall of the squared residual over visible directions, prior aside, (V,)
+    freedom: Array  # number of those directions, (V,)
+    # log evidence of the set with the variant, (V,); none where `MIN_OWN_SHARE` share or less of
+    # its signature is its own
     evidence: Array
-    scale: Array
-    p: Array
+    scale: Array  # factor on its usual size that gives most evidence, (V,)
+    p: Array  # probability of such a fall by chance, one variant, no correction, (V,)
 
 
 def ranked(evidence: Array) -> IntArray:

@@ -19,8 +19,7 @@ from matstd.diagnosis.evidence.effect_signatures import (
 from matstd.twin.frames import Array
 from matstd.twin.model import Effect, Inner, Tunable, columns, is_tunable
 
-MAX_KEPT = 300
-"""Periods of a long scan that get a signature."""
+MAX_KEPT = 300  # periods of a long scan that get a signature
 
 MAX_COMPLETE_SCAN = 1_000_000
 """Touches times periods up to which every period gets a signature, 16 MB; no spectrum that ignores
@@ -30,11 +29,8 @@ BINS_PER_PERIOD = 8.0
 """Bins of a reading in the shortest period: within a bin a sine turns by 45 degrees and keeps 97 %
 of its size."""
 
-BACKGROUND_WIDTH = 101
-"""Scanned periods whose median is the background of a line of the spectrum."""
-
-INFINITE_PERIOD = 1e9
-"""A period in mm over which a cosine stays 1, as that of no wave a turn does."""
+BACKGROUND_WIDTH = 101  # scanned periods whose median is the background of a line of the spectrum
+INFINITE_PERIOD = 1e9  # a period in mm over which a cosine stays 1, as that of no wave a turn does
 
 
 def period_of(effect: Effect, complement: ResidualSpace) -> Inner | None:

@@ -22,14 +22,9 @@ from matstd.twin.units import DEG
 FREE_LENGTH = 20.0
 """Standard deviation (mm) of a length that may be stated wrongly: a stylus of another length."""
 
-FREE_ANGLE = 0.1
-"""The same of a zero position, rad."""
-
-AS_COMPUTED = 1e-3
-"""Deviations that follow from the readings do so within this, mm."""
-
-MIN_TOUCH_INTERVAL = 1.0
-"""Least time between two touches of a probe, s."""
+FREE_ANGLE = 0.1  # the same of a zero position, rad
+AS_COMPUTED = 1e-3  # deviations that follow from the readings do so within this, mm
+MIN_TOUCH_INTERVAL = 1.0  # least time between two touches of a probe, s
 
 
 class Fault(Enum):
@@ -50,16 +45,12 @@ class Fault(Enum):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Suspect:
-    """One mistake undone.
-
-    Attributes:
-        run: As it is without the mistake, but for the free lengths.
-        free: Location errors, or the radius of the ball, left free where the mistake is a number.
-    """
+    """One mistake undone."""
 
     fault: Fault
     axes: tuple[str, ...]
-    run: Run
+    run: Run  # as it is without the mistake, but for the free lengths
+    # location errors, or the radius of the ball, left free where the mistake is a number
     free: tuple[Effect, ...] = ()
 
 

@@ -39,8 +39,7 @@ MAX_TOUCHES = 400
 """Most touches that suspects are tried on. More change no answer, and thirty suspects take
 seconds."""
 
-TRIMMED_SHARE = 0.05
-"""Share of the touches, farthest from a first fit, that do not count."""
+TRIMMED_SHARE = 0.05  # share of the touches, farthest from a first fit, that do not count
 
 SETUP_FACTOR = 20.0
 """Factor on the usual freedom of the set-ups (1 mm, 5 mrad). The place of the standard is no
@@ -56,27 +55,18 @@ MAX_STEPS = 3
 
 @dataclass(frozen=True, slots=True, eq=False)
 class DescriptionFault:
-    """A mistake in the description that makes the run fit once it is undone.
-
-    Attributes:
-        numbers: What was found where the mistake is a number.
-        notation: Chain with which the run fits, "" where it stays.
-        log_odds: Evidence for it against the description as it is.
-        rms: Residual as described and without the mistake, mm.
-        test_rms: Held-out error as described and without the mistake, mm.
-        widened: Errors of the machine over the expected ones, as described and without the mistake.
-        alike: Other mistakes that explain the run as well.
-    """
+    """A mistake in the description that makes the run fit once it is undone."""
 
     fault: Fault
     axes: tuple[str, ...]
-    numbers: tuple[FoundNumber, ...]
-    notation: str
-    log_odds: float
-    rms: tuple[float, float]
-    test_rms: tuple[float, float]
+    numbers: tuple[FoundNumber, ...]  # what was found where the mistake is a number
+    notation: str  # chain with which the run fits, "" where it stays
+    log_odds: float  # evidence for it against the description as it is
+    rms: tuple[float, float]  # residual as described and without the mistake, mm
+    test_rms: tuple[float, float]  # held-out error as described and without the mistake, mm
+    # errors of the machine over the expected ones, as described and without the mistake
     widened: tuple[float, float]
-    alike: tuple["DescriptionFault", ...] = ()
+    alike: tuple["DescriptionFault", ...] = ()  # other mistakes that explain the run as well
 
 
 @dataclass(frozen=True, slots=True, eq=False)

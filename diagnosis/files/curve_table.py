@@ -14,14 +14,9 @@ from matstd.twin.model import Effect
 from matstd.twin.numbers import significant
 from matstd.twin.units import DEG
 
-POINTS = 41
-"""Points of a curve: a tenth of its domain has three."""
-
-BEYOND = 0.3
-"""Share of its domain by which a curve is shown beyond it on either side."""
-
-_OF_VARIABLE = {"rad": ("deg", DEG)}
-"""Unit of a variable in files, and one of it in the base unit."""
+POINTS = 41  # points of a curve: a tenth of its domain has three
+BEYOND = 0.3  # share of its domain by which a curve is shown beyond it on either side
+_OF_VARIABLE = {"rad": ("deg", DEG)}  # unit of a variable in files, and one of it in the base unit
 
 
 class CurveEntry(Table):

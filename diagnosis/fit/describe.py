@@ -15,11 +15,8 @@ from matstd.twin.numbers import rms
 from matstd.twin.record import Touches
 from matstd.twin.units import DEG, MINUTE, UM, URAD
 
-END_SHARE = 1e-3
-"""Share of an end of a scan within which a value lies at it."""
-
-MIN_UNSEEN_SHARE = 0.99
-"""Share of its prior uncertainty that a parameter keeps if no touch sees it."""
+END_SHARE = 1e-3  # share of an end of a scan within which a value lies at it
+MIN_UNSEEN_SHARE = 0.99  # share of its prior uncertainty that a parameter keeps if no touch sees it
 
 RANK_TOLERANCE = 1e-6
 """Singular values of columns below this share of the largest are rounding: they say the same."""
@@ -44,24 +41,16 @@ class Role(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Reported:
-    """One number of an effect as it stands in a file.
+    """One number of an effect as it stands in a file."""
 
-    Attributes:
-        quantity: What it is: `amplitude`, `tau`.
-        unit: As the file spells it: `um`, `min`, `um_per_K`; "" for a pure number.
-        u: Standard uncertainty, or None where the run gives none.
-        factor: One of that unit in the base unit.
-        role: Role of the number among those of its effect.
-        bound: -1 or 1 where it lies at the lower or upper end of what was scanned, and is no more
-            than a bound; 0 for an estimate.
-    """
-
-    quantity: str
-    unit: str
+    quantity: str  # what it is: `amplitude`, `tau`
+    unit: str  # as the file spells it: `um`, `min`, `um_per_K`; "" for a pure number
     value: float
-    u: float | None
-    factor: float
-    role: Role
+    u: float | None  # standard uncertainty, or None where the run gives none
+    factor: float  # one of that unit in the base unit
+    role: Role  # role of the number among those of its effect
+    # -1 or 1 where it lies at the lower or upper end of what was scanned, and is no more than a
+    # bound; 0 for an estimate
     bound: int = 0
 
     @property

@@ -33,20 +33,15 @@ class Determined:
 
 @dataclass(frozen=True, eq=False)
 class Estimable:
-    """What a fit can and cannot say.
-
-    Attributes:
-        rows: Columns of the touches in use over their noise, times the prior's standard deviations.
-        effective: Number of parameters that the data rather than the prior decide.
-        combinations: Combinations of the machine's parameters, best determined first.
-        determined: Parameters that are determined by themselves, best first.
-    """
+    """What a fit can and cannot say."""
 
     fit: Fit
+    # columns of the touches in use over their noise, times the prior's standard deviations
     rows: Array
-    effective: float
+    effective: float  # number of parameters that the data rather than the prior decide
+    # combinations of the machine's parameters, best determined first
     combinations: tuple[EstimableCombination, ...]
-    determined: tuple[Determined, ...]
+    determined: tuple[Determined, ...]  # parameters that are determined by themselves, best first
 
     @cached_property
     def found(self) -> Identifiability:

@@ -42,8 +42,7 @@ MIN_POSES = 4  # of fewer, one held out leaves the fit with less than three quar
 BLOCKS = 10
 """With fewer table poses than that, held out are so many blocks of touches one after the other."""
 
-MAX_BY_CHANCE = 3.0
-"""Standard deviations of the number of accidents that chance may add."""
+MAX_BY_CHANCE = 3.0  # standard deviations of the number of accidents that chance may add
 
 MIN_TOUCHES = 8
 """Fewer touches than this do not even place a standard and leave something to judge it by."""

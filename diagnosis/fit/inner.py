@@ -23,18 +23,13 @@ class Tangent:
     ``d/dtau sum_k theta_k column_k(tau)`` by central difference. With it in a fit the covariance
     of the amplitudes carries the uncertainty of the inner parameter, and its estimate is a step of
     Gauss and Newton.
-
-    Attributes:
-        theta: Present linear parameters of the effect, (K,), base units.
-        step: Step of the difference, base unit of the inner parameter.
-        sd: Prior standard deviation of the displacement.
     """
 
     effect: Tunable
     index: int
-    theta: tuple[float, ...]
-    step: float
-    sd: float
+    theta: tuple[float, ...]  # present linear parameters of the effect, (K,), base units
+    step: float  # step of the difference, base unit of the inner parameter
+    sd: float  # prior standard deviation of the displacement
 
     kind = "tangent"
 

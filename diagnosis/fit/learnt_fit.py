@@ -23,21 +23,13 @@ from matstd.twin.record import Run
 
 @dataclass(frozen=True, eq=False)
 class Learnt:
-    """What must be known of a fit, besides its run and its model, to make it again.
+    """What must be known of a fit, besides its run and its model, to make it again."""
 
-    Attributes:
-        estimates: Estimates of the machine's parameters, inner parameters held.
-        from_inner: Root (P, T) of the covariance that T uncertain inner parameters add to it.
-        factor: Noise over the stated one, as the fit weighted with.
-        gross: Rows that were set aside as gross errors, held out or not, (N,).
-        memory: Correlation of the noise; None for white noise.
-    """
-
-    estimates: Prior
-    from_inner: Array
-    factor: float
-    gross: BoolArray
-    memory: Memory | None = None
+    estimates: Prior  # estimates of the machine's parameters, inner parameters held
+    from_inner: Array  # root (P, T) of the covariance that T uncertain inner parameters add to it
+    factor: float  # noise over the stated one, as the fit weighted with
+    gross: BoolArray  # rows that were set aside as gross errors, held out or not, (N,)
+    memory: Memory | None = None  # correlation of the noise; None for white noise
 
     @classmethod
     def of(cls, fit: Fit) -> "Learnt":

@@ -12,17 +12,12 @@ from matstd.twin.model import Effect
 
 @dataclass(frozen=True, eq=False)
 class Prior:
-    """Normal distribution of P parameters, ``theta = mean + root phi`` with unit normal phi.
+    """Normal distribution of P parameters, ``theta = mean + root phi`` with unit normal phi."""
 
-    Attributes:
-        mean: Shape (P,), base units.
-        root: Shape (P, P), any root of the covariance: ``covariance = root root^T``.
-        narrowed: Factor on what is expected of the class of machine, in `root` already, (P,); None
-            where there is none.
-    """
-
-    mean: Array
-    root: Array
+    mean: Array  # shape (P,), base units
+    root: Array  # shape (P, P), any root of the covariance: ``covariance = root root^T``
+    # factor on what is expected of the class of machine, in `root` already, (P,); None where there
+    # is none
     narrowed: Array | None = None
 
     @classmethod

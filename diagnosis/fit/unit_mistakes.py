@@ -15,14 +15,12 @@ MIN_SMALL_RATIO = 30.0
 MIN_TINY_RATIO = 300.0
 """Times smaller that they are suspect by themselves: between the best machines and a thousand."""
 
-MIN_LARGE_RATIO = 10.0
-"""Times larger than expected that no machine of the kind is."""
+MIN_LARGE_RATIO = 10.0  # times larger than expected that no machine of the kind is
 
 MIN_SCATTER_RATIO = 0.1
 """Scatter over stated uncertainty that no fit leaves, however good the machine."""
 
-MAX_SCATTER_RATIO = 30.0
-"""The same in the other direction."""
+MAX_SCATTER_RATIO = 30.0  # the same in the other direction
 
 FINEST, COARSEST = 0.02 * UM, 30.0 * UM
 """Standard uncertainties (mm) that touches on a machine tool stay between."""
@@ -41,19 +39,14 @@ class MistakenUnit(Enum):
 
 @dataclass(frozen=True, slots=True)
 class UnitMistake:
-    """What looks like another unit, with typical sizes once the standard has been placed best, mm.
+    """What looks like another unit, with typical sizes once the standard is placed best, mm."""
 
-    Attributes:
-        what: Which column, and which unit it looks like.
-        expected: Size of the deviations before the machine is probed: what its model predicts,
-            and the spread that the parameters have.
-        stated: Standard uncertainty of a touch as stated.
-    """
-
-    what: MistakenUnit
+    what: MistakenUnit  # which column, and which unit it looks like
     measured: float
+    # size of the deviations before the machine is probed: what its model predicts, and the spread
+    # that the parameters have
     expected: float
-    stated: float
+    stated: float  # standard uncertainty of a touch as stated
     scatter: float
 
 

@@ -35,8 +35,7 @@ MAX_PARALLEL_SINE = 0.05
 """Sine of the angle between two lines below which their distance, not their crossing, is
 reported."""
 
-MIN_LINE_DISTANCE = 1.0
-"""Distance (mm) of parallel lines below which no link has a direction."""
+MIN_LINE_DISTANCE = 1.0  # distance (mm) of parallel lines below which no link has a direction
 
 LINE_STEP = 1e-4
 """Step (mm, rad) of the differences by which a parameter moves the lines: all are nearly linear."""
@@ -44,15 +43,10 @@ LINE_STEP = 1e-4
 
 @dataclass(frozen=True, eq=False)
 class Lines:
-    """Lines of joints with every joint at zero, from the foundation outwards.
+    """Lines of joints with every joint at zero, from the foundation outwards."""
 
-    Attributes:
-        point: One on every line, (J, 3), mm.
-        direction: Unit, (J, 3).
-    """
-
-    point: Array
-    direction: Array
+    point: Array  # one on every line, (J, 3), mm
+    direction: Array  # unit, (J, 3)
 
     def normal(self, i: int) -> Array:
         """Common normal of line i and the next one, unit, (3,); zero where they are one line."""

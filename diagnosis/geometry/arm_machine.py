@@ -21,17 +21,11 @@ from matstd.twin.model import Model, traits
 
 @dataclass(frozen=True, eq=False)
 class FoundArm:
-    """An arm as a run has it.
+    """An arm as a run has it."""
 
-    Attributes:
-        chain: With points and directions of all joints.
-        before: Error of the run with nothing but the set-up in the model, mm.
-        after: The same with this machine in place of the stated one, to first order, mm.
-    """
-
-    chain: Chain
-    before: float
-    after: float
+    chain: Chain  # with points and directions of all joints
+    before: float  # error of the run with nothing but the set-up in the model, mm
+    after: float  # the same with this machine in place of the stated one, to first order, mm
 
 
 def found_arm(fit: Fit) -> FoundArm | None:

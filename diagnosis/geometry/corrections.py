@@ -15,19 +15,14 @@ from matstd.twin.machine import LETTERS, Link
 
 @dataclass(frozen=True, slots=True)
 class Correction:
-    """A number of the machine file as the run has it.
+    """A number of the machine file as the run has it."""
 
-    Attributes:
-        key: `axis.C.point`, `axis.Y.direction`, `probe.length_mm`.
-        stated: What the file says, mm.
-        u: Standard uncertainty of every number; of those that stay as stated it is None.
-        rivals: Other numbers that explain the run equally: of all of them one is wrong.
-    """
-
-    key: str
-    stated: tuple[float, ...]
+    key: str  # `axis.C.point`, `axis.Y.direction`, `probe.length_mm`
+    stated: tuple[float, ...]  # what the file says, mm
     found: tuple[float, ...]
+    # standard uncertainty of every number; of those that stay as stated it is None
     u: tuple[float | None, ...]
+    # other numbers that explain the run equally: of all of them one is wrong
     rivals: tuple[FoundNumber, ...] = ()
 
 

@@ -45,8 +45,7 @@ MIN_SHARED_CORRELATION = 0.3
 """Correlation of estimates from which a parameter is named as one that a quantity is shared with;
 four parameters that share one direction evenly have a third each."""
 
-MAX_NAMED = 4
-"""Parameters that are named so."""
+MAX_NAMED = 4  # parameters that are named so
 
 
 class Rung(Enum):
@@ -70,18 +69,13 @@ class LadderStep:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LearntGeometry:
-    """What a run says of the geometry of its machine.
+    """What a run says of the geometry of its machine."""
 
-    Attributes:
-        rows: Every quantity, axis by axis.
-        ladder: The error from the set-up alone to everything in the model.
-        together: Numbers that each explain alone all lines far from where they are stated,
-            where several keys of the machine file would have to be changed instead.
-    """
-
-    rows: tuple[GeometryRow, ...]
-    ladder: tuple[LadderStep, ...]
+    rows: tuple[GeometryRow, ...]  # every quantity, axis by axis
+    ladder: tuple[LadderStep, ...]  # the error from the set-up alone to everything in the model
     corrections: tuple[Correction, ...]
+    # numbers that each explain alone all lines far from where they are stated, where several keys
+    # of the machine file would have to be changed instead
     together: tuple[FoundNumber, ...] = ()
 
 

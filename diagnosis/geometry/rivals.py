@@ -20,8 +20,7 @@ from matstd.twin.model import Effect, columns, traits
 from matstd.twin.record import Touches
 from matstd.twin.sampling import spread_rows
 
-MAX_TOUCHES = 1000
-"""Most touches that are used: more do not distinguish any further columns."""
+MAX_TOUCHES = 1000  # most touches that are used: more do not distinguish any further columns
 
 MAX_LOG_ODDS_ALIKE = float(np.log(100.0))
 """Log odds below which two descriptions are not distinguished."""
@@ -35,15 +34,10 @@ SETUP_FACTOR = 20.0
 
 @dataclass(frozen=True, slots=True)
 class FoundNumber:
-    """A number of the description as the run has it, mm or rad.
+    """A number of the description as the run has it, mm or rad."""
 
-    Attributes:
-        name: `radius`, `length`, or the location error that does the same, `EX0C`.
-        change: What has to be added to what is stated.
-    """
-
-    name: str
-    change: float
+    name: str  # `radius`, `length`, or the location error that does the same, `EX0C`
+    change: float  # what has to be added to what is stated
     u: float
 
 

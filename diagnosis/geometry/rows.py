@@ -18,44 +18,33 @@ class Estimate:
 
 @dataclass(frozen=True, slots=True)
 class GeometryRow:
-    """One quantity of the machine's geometry.
-
-    Attributes:
-        symbol: Its ISO 230-1 name, such as EC0Y for the squareness of Y to X.
-        axes: The axis, or the two of a squareness, the reference first.
-        unit: "mm", "rad", or "1" for a scale.
-        estimate: In that unit; of a straightness, an angular error or an error motion the
-            peak-to-valley over the probed readings.
-        lever: What the estimate is multiplied by to say what it does at the ends, mm per unit.
-        expected: Standard deviation before the run.
-        is_determined: Whether the run, rather than the expectation, decides it.
-        shared_with: Parameters that it cannot be separated from, where it is not determined.
-        before: The same in an earlier model, or in the first of several runs.
-        change: Now less before; None without a before.
-        course: The same in every run, in their order, where there are several; None in a run that
-            does not determine it.
-        steps: What changed into every run but the first; None where either is not determined.
-        usual: For the line or zero of a rotary axis: usual size of the error that names it.
-        added_up: For such a line: standard deviation before the run of what all errors of the
-            machine add up to there. Angles of a linear axis far from its table bend its way.
-        u_model: What the choice of the model contributes to the uncertainty of the estimate.
-    """
+    """One quantity of the machine's geometry."""
 
     quantity: Quantity
-    symbol: str
-    axes: tuple[str, ...]
-    unit: str
+    symbol: str  # its ISO 230-1 name, such as EC0Y for the squareness of Y to X
+    axes: tuple[str, ...]  # the axis, or the two of a squareness, the reference first
+    unit: str  # "mm", "rad", or "1" for a scale
+    # in that unit; of a straightness, an angular error or an error motion the peak-to-valley over
+    # the probed readings
     estimate: Estimate
-    lever: float
-    expected: float
-    is_determined: bool
+    lever: float  # what the estimate is multiplied by to say what it does at the ends, mm per unit
+    expected: float  # standard deviation before the run
+    is_determined: bool  # whether the run, rather than the expectation, decides it
+    # parameters that it cannot be separated from, where it is not determined
     shared_with: tuple[str, ...] = ()
-    before: Estimate | None = None
-    change: Estimate | None = None
+    before: Estimate | None = None  # the same in an earlier model, or in the first of several runs
+    change: Estimate | None = None  # now less before; None without a before
+    # the same in every run, in their order, where there are several; None in a run that does not
+    # determine it
     course: tuple[Estimate | None, ...] = ()
+    # what changed into every run but the first; None where either is not determined
     steps: tuple[Estimate | None, ...] = ()
+    # for the line or zero of a rotary axis: usual size of the error that names it
     usual: float | None = None
+    # for such a line: standard deviation before the run of what all errors of the machine add up to
+    # there. Angles of a linear axis far from its table bend its way
     added_up: float = 0.0
+    # what the choice of the model contributes to the uncertainty of the estimate
     u_model: float = 0.0
 
     @property

@@ -22,8 +22,7 @@ TIME_BLOCKS, PLACE_BLOCKS = 10, 5
 CELLS = 2, 4
 """Parts of the range of either variable of a law of two: touches of a cell of both are left out."""
 
-MEMORY_PARAMETERS = 2
-"""Of noise that remembers: its correlation, and its kind."""
+MEMORY_PARAMETERS = 2  # of noise that remembers: its correlation, and its kind
 
 
 class Refusal(Enum):
@@ -38,17 +37,11 @@ class Refusal(Enum):
 
 @dataclass(frozen=True, eq=False)
 class HeldOut:
-    """Error of touches that were left out, without and with the laws.
+    """Error of touches that were left out, without and with the laws."""
 
-    Attributes:
-        what: "poses", "times", or a variable whose range was cut into blocks.
-        before: Root mean square error with the model alone, mm.
-        after: With the laws, mm.
-    """
-
-    what: str
-    before: float
-    after: float
+    what: str  # "poses", "times", or a variable whose range was cut into blocks
+    before: float  # root mean square error with the model alone, mm
+    after: float  # with the laws, mm
 
 
 def memory_score(fit: Fit) -> float:

@@ -14,19 +14,12 @@ from matstd.twin.record import Run, with_commanded, without_copies
 
 @dataclass(frozen=True, eq=False)
 class Beginning:
-    """A model without laws, as it fits a run.
+    """A model without laws, as it fits a run."""
 
-    Attributes:
-        fit: In white noise: columns of laws are scanned row by row.
-        prior: Of the parameters of its model; None for what its effects state.
-        is_known: Whether that prior is an earlier fit, which this run does not narrow.
-        memory: Of the noise as it was found without laws; None for white noise.
-    """
-
-    fit: Fit
-    prior: Prior | None = None
-    is_known: bool = False
-    memory: Memory | None = None
+    fit: Fit  # in white noise: columns of laws are scanned row by row
+    prior: Prior | None = None  # of the parameters of its model; None for what its effects state
+    is_known: bool = False  # whether that prior is an earlier fit, which this run does not narrow
+    memory: Memory | None = None  # of the noise as it was found without laws; None for white noise
 
     @classmethod
     def of_run(cls, run: Run, model: Model | None = None) -> "Beginning":

@@ -16,48 +16,33 @@ from matstd.diagnosis.residual import Bearer
 from matstd.twin.frames import Array
 from matstd.twin.laws import Driver
 
-SIZES = np.geomspace(0.3, 300.0, 7)
-"""Sizes of curves, in units of the noise at a touch."""
+SIZES = np.geomspace(0.3, 300.0, 7)  # sizes of curves, in units of the noise at a touch
 
 BETWEEN_SIZES = 5.0
 """Most log evidence that a size between two of every second one adds; less than 2 was seen."""
 
-CURVE_CHARGE = 4.0
-"""Log evidence that size and length of a curve cost."""
-
-MOST_NUMBERS = 8_000_000
-"""Numbers of a product that stand in memory at a time: 64 MB."""
+CURVE_CHARGE = 4.0  # log evidence that size and length of a curve cost
+MOST_NUMBERS = 8_000_000  # numbers of a product that stand in memory at a time: 64 MB
 
 SAME_IMITATION = 1e-9
 """Change of the share of a direction that a model imitates, below which it is rounding."""
 
 
 class Waves(NamedTuple):
-    """Waves of one or two variables.
-
-    Attributes:
-        B: At all touches, (N, K).
-        weights: Prior deviations of their amplitudes for every correlation length, (L, K).
-        lengths: Those lengths, as shares of the domain; 0 for a direction.
-    """
+    """Waves of one or two variables."""
 
     drivers: tuple[Driver, ...]
-    B: Array
-    weights: Array
-    lengths: Sequence[float]
+    B: Array  # at all touches, (N, K)
+    weights: Array  # prior deviations of their amplitudes for every correlation length, (L, K)
+    lengths: Sequence[float]  # those lengths, as shares of the domain; 0 for a direction
 
 
 class Evidence(NamedTuple):
-    """Log evidence of curves at several carriers, (M,).
-
-    Attributes:
-        which: Number of the best length.
-        size: Best size, in units of the noise.
-    """
+    """Log evidence of curves at several carriers, (M,)."""
 
     value: Array
-    which: Array
-    size: Array
+    which: Array  # number of the best length
+    size: Array  # best size, in units of the noise
 
 
 class Group:
@@ -101,15 +86,10 @@ def _blocks(count: int, width: int) -> list[slice]:
 
 @dataclass(eq=False)
 class Curves:
-    """Inner products of all carriers with waves, freed of what a model imitates of the data.
+    """Inner products of all carriers with waves, freed of what a model imitates of the data."""
 
-    Attributes:
-        groups: The carriers, by their number of columns.
-        waves: Of every variable and of pairs of them.
-    """
-
-    groups: tuple[Group, ...]
-    waves: tuple[Waves, ...]
+    groups: tuple[Group, ...]  # the carriers, by their number of columns
+    waves: tuple[Waves, ...]  # of every variable and of pairs of them
     _taken: Array | None = None
     _grams: dict[tuple[int, int], Array] = field(default_factory=dict)
 

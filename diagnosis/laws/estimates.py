@@ -15,17 +15,13 @@ from matstd.twin.record import Run, with_commanded, without_copies
 
 
 class Estimate(NamedTuple):
-    """One number of a law.
-
-    Attributes:
-        unit: Base unit.
-        u: Standard uncertainty; None where it follows from the machine or is no estimate.
-    """
+    """One number of a law."""
 
     name: str
     value: float
+    # standard uncertainty; None where it follows from the machine or is no estimate
     u: float | None
-    unit: str
+    unit: str  # base unit
 
 
 def amplitudes(learning: Learning, law: Law) -> list[Estimate]:
@@ -134,18 +130,13 @@ def _values(law: Law, driver: Driver, x: Array, at: tuple[float, ...], held: Arr
 
 @dataclass(frozen=True, eq=False)
 class SecondRun:
-    """Another run of the machine, whose set-ups and ordinary model are fitted anew.
-
-    Attributes:
-        without: Root mean square of what the model leaves, per degree of freedom, mm.
-        learnt: The same with the laws that hold for every run taken off as they were learnt.
-        clocked: With those besides that belong to the first run, as if what drives them had kept
-            its times; None where there are none.
-    """
+    """Another run of the machine, whose set-ups and ordinary model are fitted anew."""
 
     touches: int
-    without: float
-    learnt: float
+    without: float  # root mean square of what the model leaves, per degree of freedom, mm
+    learnt: float  # the same with the laws that hold for every run taken off as they were learnt
+    # with those besides that belong to the first run, as if what drives them had kept its times;
+    # None where there are none
     clocked: float | None = None
 
     @property

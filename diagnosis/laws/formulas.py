@@ -22,8 +22,7 @@ from matstd.twin.laws import SHAPES, Driver, Factor, Law, Shape, grid, shapes_of
 
 IntArray = NDArray[np.int64]
 
-COLUMNS_AT_A_TIME = 2000
-"""Columns that are projected at a time."""
+COLUMNS_AT_A_TIME = 2000  # columns that are projected at a time
 
 COARSE, FULL = 50, 5
 """Points of a grid that are tried beside every simple shape, and the best pairs whose second shape
@@ -33,8 +32,7 @@ MOST_ALIKE = 3
 """Products of one variable's shape that are kept: what looks like a line over a temperature (a
 play, a kink, a settling over time) would crowd out other shapes of the other variable."""
 
-MOST_STEPS = 400
-"""Most evaluations of a refinement."""
+MOST_STEPS = 400  # most evaluations of a refinement
 
 OUTSIDE = 0.25
 """Share of the range of a variable by which a place may lie outside it: the flank of a bump whose
@@ -45,20 +43,13 @@ SIMPLE_HARMONICS = (1, 2, 3, 4)
 
 @dataclass(frozen=True, eq=False)
 class Candidate:
-    """A law at some parameters, and what it explains.
+    """A law at some parameters, and what it explains."""
 
-    Attributes:
-        bearer: Its carrier, with columns.
-        explained: Squared residual.
-        parameters: Number of amplitudes and of parameters that the run determines.
-        score: Log evidence, parameters charged.
-    """
-
-    bearer: Bearer
+    bearer: Bearer  # its carrier, with columns
     law: Law
-    explained: float
-    parameters: int
-    score: float
+    explained: float  # squared residual
+    parameters: int  # number of amplitudes and of parameters that the run determines
+    score: float  # log evidence, parameters charged
 
 
 class Part(NamedTuple):

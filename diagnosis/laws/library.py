@@ -11,11 +11,8 @@ from matstd.twin.library import proposals
 from matstd.twin.model import Effect, columns, inner_values, traits
 from matstd.twin.record import Touches
 
-MOST_VARIANTS = 40
-"""Points of the grid of one effect: a law that lies between them loses little."""
-
-CHARGE = 5.0
-"""Log evidence that choosing one of some hundred effects costs."""
+MOST_VARIANTS = 40  # points of the grid of one effect: a law that lies between them loses little
+CHARGE = 5.0  # log evidence that choosing one of some hundred effects costs
 
 
 class LibraryEffect(NamedTuple):

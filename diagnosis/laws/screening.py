@@ -19,19 +19,15 @@ from matstd.twin.frames import Array
 from matstd.twin.laws import ON_BALL, SHAPES, WORDS, Driver, curve_columns, drivers, grid
 from matstd.twin.record import Touches
 
-LENGTHS = (0.03, 0.1, 0.3)
-"""Correlation lengths of curves, as shares of the range."""
-
-SURFACE_WAVES = 6
-"""Waves of either variable of a surface, from none on."""
+LENGTHS = (0.03, 0.1, 0.3)  # correlation lengths of curves, as shares of the range
+SURFACE_WAVES = 6  # waves of either variable of a surface, from none on
 
 SURFACE_LENGTH = 0.2
 
 DOMAIN_MARGIN = 0.1
 """Share of the range by which the domain of a curve exceeds the values on either side."""
 
-FAST_WAVES = 1200
-"""Frequencies up to which sines of a reading are scanned, per range and half."""
+FAST_WAVES = 1200  # frequencies up to which sines of a reading are scanned, per range and half
 
 
 class Found(NamedTuple):
@@ -46,15 +42,11 @@ class Found(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Field:
-    """All that a law may be made of in one run.
-
-    Attributes:
-        x: Values of every variable at all touches, by name.
-    """
+    """All that a law may be made of in one run."""
 
     bearers: tuple[Bearer, ...]
     drivers: tuple[Driver, ...]
-    x: dict[str, Array]
+    x: dict[str, Array]  # values of every variable at all touches, by name
 
     def domain(self, driver: Driver) -> tuple[float, float]:
         """Range of a variable with a margin."""

@@ -43,8 +43,7 @@ TOP_SINGLES, TOP_PAIRS, TOP_SQUARES = 14, 6, 2
 MIN_SHARE_SINGLE, MIN_SHARE_PAIR = 0.4, 0.6
 """Share of the best evidence of a curve from which a formula is looked for."""
 
-MIN_GAIN_PAIR = 3.0
-"""Log evidence that a second variable must add to a curve."""
+MIN_GAIN_PAIR = 3.0  # log evidence that a second variable must add to a curve
 
 CLEAR = 5.0
 """Log evidence by which a formula of one shape is so much better than the curve that no product of
@@ -53,14 +52,9 @@ two shapes of that variable is looked for."""
 UNUSUAL = ("power", "saturation", "dead-band", "pulse", "saw", "quad-about")
 """Shapes that are charged for being met seldom."""
 
-DRIFT = "time"
-"""Variable of an unrecorded driver, of which only smoothness in time is assumed."""
-
-QUICK = 8.0
-"""Periods within the range from which a sine is quick."""
-
-PER_DRIVER = 3
-"""Most carriers of one variable among them: others would crowd out a second variable."""
+DRIFT = "time"  # variable of an unrecorded driver, of which only smoothness in time is assumed
+QUICK = 8.0  # periods within the range from which a sine is quick
+PER_DRIVER = 3  # most carriers of one variable among them: others would crowd out a second variable
 
 ROUGH, MODULATED = 12, 2
 """Shapes of either kind that no curve shows, and those of which a second variable is looked for."""
@@ -76,35 +70,24 @@ nine in ten gained less than 0.05. What could not be kept even so is not refined
 
 @dataclass(frozen=True, eq=False)
 class Searched:
-    """What a search for one law found.
-
-    Attributes:
-        candidates: Laws with refined parameters, the best first; the first is the choice.
-        curve: Best log evidence of a law without a formula, charged as the candidates are.
-        drift: The same of a curve over time alone: a driver that is smooth and was not recorded.
-    """
+    """What a search for one law found."""
 
     space: Space
+    # laws with refined parameters, the best first; the first is the choice
     candidates: tuple[Candidate, ...]
-    curve: float
+    curve: float  # best log evidence of a law without a formula, charged as the candidates are
+    # the same of a curve over time alone: a driver that is smooth and was not recorded
     drift: float
 
 
 @dataclass(frozen=True, eq=False)
 class Ground:
-    """What all searches in one run share, whatever the model is and the rows that it uses.
+    """What all searches in one run share, whatever the model is and the rows that it uses."""
 
-    Attributes:
-        field: Carriers and variables.
-        grids: Columns of all shapes.
-        curves: Inner products of curves over every variable.
-        surfaces: Of surfaces over every two.
-    """
-
-    field: Field
-    grids: Grids
-    curves: Curves
-    surfaces: Curves
+    field: Field  # carriers and variables
+    grids: Grids  # columns of all shapes
+    curves: Curves  # inner products of curves over every variable
+    surfaces: Curves  # of surfaces over every two
 
     @classmethod
     def of(cls, run: Run) -> "Ground":

@@ -18,14 +18,12 @@ from matstd.twin.record import Touches
 MIN_OWN = 1e-5
 """Least squared share of a column that the model cannot imitate: below it the rest is rounding."""
 
-SMALLEST_OWN = 1e-7
-"""Least square of a direction of columns of unit length that is no rounding."""
+SMALLEST_OWN = 1e-7  # least square of a direction of columns of unit length that is no rounding
 
 SMALLEST_COLUMN = 1e-100
 """Columns without larger numbers are those of a shape far from every touch; squares underflow."""
 
-SMALLEST_SHARE = 1e-9
-"""Least share of a direction of the data that the model imitates at all."""
+SMALLEST_SHARE = 1e-9  # least share of a direction of the data that the model imitates at all
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,24 +32,15 @@ class Space:
 
     Rows are all touches of the run; those that the fit does not use are zero, so that fits that use
     others share columns.
-
-    Attributes:
-        touches: All of the run.
-        used: Rows that the fit rests upon, (N,).
-        u: Standard uncertainty of all as stated, (N,), mm.
-        basis: What the model can imitate of the data: A (N, K) with ``A A^T = Q Q^T``.
-        r: Residual over the stated uncertainty, (N,).
-        square: Squared residual, the prior's part and the stated noise included.
-        dof: Degrees of freedom left.
     """
 
-    touches: Touches
-    used: BoolArray
-    u: Array
-    basis: Array
-    r: Array
-    square: float
-    dof: float
+    touches: Touches  # all of the run
+    used: BoolArray  # rows that the fit rests upon, (N,)
+    u: Array  # standard uncertainty of all as stated, (N,), mm
+    basis: Array  # what the model can imitate of the data: A (N, K) with ``A A^T = Q Q^T``
+    r: Array  # residual over the stated uncertainty, (N,)
+    square: float  # squared residual, the prior's part and the stated noise included
+    dof: float  # degrees of freedom left
 
     @classmethod
     def of(cls, fit: Fit) -> "Space":

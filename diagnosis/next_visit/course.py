@@ -15,17 +15,11 @@ TIME_CONSTANTS = np.geomspace(0.03, 3.0, 25)
 
 @dataclass(frozen=True, slots=True)
 class Schedule:
-    """How a visit spends its time.
+    """How a visit spends its time."""
 
-    Attributes:
-        warm_up: How long the machine has moved before the first touch, s.
-        pause: How long it stands still in the middle of the visit, s.
-        slowness: Time from touch to touch over that of the recorded run.
-    """
-
-    warm_up: float = 0.0
-    pause: float = 0.0
-    slowness: float = 1.0
+    warm_up: float = 0.0  # how long the machine has moved before the first touch, s
+    pause: float = 0.0  # how long it stands still in the middle of the visit, s
+    slowness: float = 1.0  # time from touch to touch over that of the recorded run
 
     def times(self, visit: IntArray, pace: float) -> Array:
         """Time of every touch from the first one on, (N,), s.
@@ -68,16 +62,12 @@ class Course:
 
     ``T = start + rise (1 - exp(-t/tau))``; the remainder is weather, which another day has, too,
     but at other times.
-
-    Attributes:
-        tau: s.
-        weather: Remainder over the time since the start, two rows: s and unit of the sensor.
     """
 
     start: float
     rise: float
-    tau: float
-    weather: Array
+    tau: float  # s
+    weather: Array  # remainder over the time since the start, two rows: s and unit of the sensor
 
     @classmethod
     def of(cls, time: Array, value: Array) -> "Course":

@@ -22,17 +22,11 @@ run, and other shapes of the same carrier and variables."""
 
 @dataclass(frozen=True, eq=False)
 class Hypothesis:
-    """One explanation of what a model leaves.
+    """One explanation of what a model leaves."""
 
-    Attributes:
-        law: In it, of the laws that were learnt this one or a rival in its place.
-        log_odds: Of what was learnt against it.
-        fit: With everything that was learnt besides, and the displacements of inner parameters.
-    """
-
-    law: Effect
-    log_odds: float
-    fit: Fit
+    law: Effect  # in it, of the laws that were learnt this one or a rival in its place
+    log_odds: float  # of what was learnt against it
+    fit: Fit  # with everything that was learnt besides, and the displacements of inner parameters
 
     def own_effects(self, shared: int) -> tuple[Effect, ...]:
         """Effects beyond the first ones of the model, with their displacements."""

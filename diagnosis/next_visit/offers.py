@@ -10,14 +10,9 @@ from matstd.twin.machine import inverse_linear
 from matstd.twin.record import IntArray, Run, Touches, linear_approach
 from matstd.twin.units import DEG
 
-MAX_OFFERS = 600
-"""Touches among which a plan is chosen."""
-
-TARGET_DIGITS = 2
-"""Targets are offered to a hundredth of a millimetre, or of a degree."""
-
-DRAWS_PER_OFFER = 8
-"""Combinations drawn for every touch offered; most are out of reach."""
+MAX_OFFERS = 600  # touches among which a plan is chosen
+TARGET_DIGITS = 2  # targets are offered to a hundredth of a millimetre, or of a degree
+DRAWS_PER_OFFER = 8  # combinations drawn for every touch offered; most are out of reach
 
 APPROACH_CONE = 15.0 * DEG
 """A feature is approached within this angle of a direction in which the run touched it. Obstacles

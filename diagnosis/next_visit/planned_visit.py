@@ -35,8 +35,7 @@ EVENLY = 0.25
 """Share of the touches that is spread over all poses whatever the rivals predict: the new set-ups
 are located by them, and a law that is none of the rivals shows there."""
 
-SEQUENCES = 2
-"""Sequences of poses that are tried with every schedule."""
+SEQUENCES = 2  # sequences of poses that are tried with every schedule
 
 LEAST_SEPARATION = 3.0
 """Standard deviations below which a rival is not distinguished: noise would decide."""
@@ -48,8 +47,7 @@ some thousand such visits would be needed to distinguish them."""
 WEATHERS, DRAWS = 6, 40
 """Courses of the sensors, and runs of each, by which the odds after a visit are simulated."""
 
-USUAL_PACE = 15.0
-"""Time from touch to touch where a run states no times, s."""
+USUAL_PACE = 15.0  # time from touch to touch where a run states no times, s
 
 
 class NoPlan(Enum):
@@ -64,20 +62,14 @@ class NoPlan(Enum):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RivalPower:
-    """What a planned visit does against one rival.
-
-    Attributes:
-        log_odds: Against it before the visit.
-        separation: Of its prediction from that of the law, standard deviations.
-        expected: Log odds against it after the visit, on average where the law holds.
-        power: Probability of odds of 20 : 1 at least, by simulated visits; None where the rival is
-            not distinguished.
-    """
+    """What a planned visit does against one rival."""
 
     effect: Effect
-    log_odds: float
-    separation: float
-    expected: float
+    log_odds: float  # against it before the visit
+    separation: float  # of its prediction from that of the law, standard deviations
+    expected: float  # log odds against it after the visit, on average where the law holds
+    # probability of odds of 20 : 1 at least, by simulated visits; None where the rival is not
+    # distinguished
     power: float | None
 
     @property
@@ -88,27 +80,23 @@ class RivalPower:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class VisitPlan:
-    """The visit that decides best between a law and its rivals.
+    """The visit that decides best between a law and its rivals."""
 
-    Attributes:
-        law: That the visit distinguishes from its rivals; None where none was learnt.
-        touches: In the order of probing, from time 0 on, sensors as they are expected; None where
-            no plan is made.
-        rivals: Explanations that the run has not decided against and a visit could.
-        alike: Those that do the same at every touch that was offered: one class with the law.
-        power: Probability that the true one of all explanations that are distinguished gets odds of
-            20 : 1 against each other one, each weighed by its odds before the visit; None where
-            nothing is distinguished.
-        refusal: Why there are no touches.
-    """
-
+    # that the visit distinguishes from its rivals; None where none was learnt
     law: Effect | None = None
+    # in the order of probing, from time 0 on, sensors as they are expected; None where no plan is
+    # made
     touches: Touches | None = None
     schedule: Schedule = SCHEDULES[0]
+    # explanations that the run has not decided against and a visit could
     rivals: tuple[RivalPower, ...] = ()
+    # those that do the same at every touch that was offered: one class with the law
     alike: tuple[Effect, ...] = ()
+    # probability that the true one of all explanations that are distinguished gets odds of 20 : 1
+    # against each other one, each weighed by its odds before the visit; None where nothing is
+    # distinguished
     power: float | None = None
-    refusal: NoPlan | None = None
+    refusal: NoPlan | None = None  # why there are no touches
 
     @property
     def pause_after(self) -> int | None:
@@ -258,16 +246,11 @@ def _power(
 
 @dataclass(frozen=True, eq=False)
 class _Visits:
-    """What a visit of this machine would record besides its touches.
-
-    Attributes:
-        sensors: Course of every temperature sensor.
-        pace: Usual time from touch to touch, s.
-    """
+    """What a visit of this machine would record besides its touches."""
 
     run: Run
-    sensors: dict[str, Course]
-    pace: float
+    sensors: dict[str, Course]  # course of every temperature sensor
+    pace: float  # usual time from touch to touch, s
 
     @classmethod
     def of(cls, run: Run) -> "_Visits":

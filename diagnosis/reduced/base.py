@@ -19,19 +19,12 @@ from matstd.twin.model import Effect, columns
 
 @dataclass(frozen=True, eq=False)
 class Base:
-    """Columns of geometry and set-ups of a fit, without the effects that can be switched.
+    """Columns of geometry and set-ups of a fit, without the effects that can be switched."""
 
-    Attributes:
-        fit: The fit.
-        X: Over the stated uncertainty, times the root of the prior, all rows, (N, P).
-        y: Deviations over the stated uncertainty less the prior's mean, all rows, (N,).
-        is_setup: Which columns place the standard, (P,).
-    """
-
-    fit: Fit
-    X: Array
-    y: Array
-    is_setup: BoolArray
+    fit: Fit  # the fit
+    X: Array  # over the stated uncertainty, times the root of the prior, all rows, (N, P)
+    y: Array  # deviations over the stated uncertainty less the prior's mean, all rows, (N,)
+    is_setup: BoolArray  # which columns place the standard, (P,)
 
     @classmethod
     def of(cls, fit: Fit, switched: frozenset[str]) -> "Base":

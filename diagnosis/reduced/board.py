@@ -28,24 +28,16 @@ from matstd.twin.frames import Array
 from matstd.twin.library import ordinary_model
 from matstd.twin.model import Effect, traits
 
-MOST_SWITCHES = 15
-"""Effects on one board: found ones, their look-alikes, the best others."""
-
-MOST_ALIKE = 3
-"""Look-alikes of one found effect that are offered."""
-
-MOST_OF_A_KIND = 3
-"""Other effects of one kind: the next ones differ in the axis alone."""
-
-MOST_PARAMETERS = 12
-"""Parameters of an effect above which it is offered only where it was found."""
+MOST_SWITCHES = 15  # effects on one board: found ones, their look-alikes, the best others
+MOST_ALIKE = 3  # look-alikes of one found effect that are offered
+MOST_OF_A_KIND = 3  # other effects of one kind: the next ones differ in the axis alone
+MOST_PARAMETERS = 12  # parameters of an effect above which it is offered only where it was found
 
 MOST_TOUCHES = 3000
 """Touches from which others are ranked by an even choice of them, at a few points of their grids
 and without the many periods that waves may have."""
 
-FEW = 3
-"""Points of a grid, of a long run."""
+FEW = 3  # points of a grid, of a long run
 
 MOST_COLUMNS, FEW_COLUMNS = 20, 8
 """Stored columns above which no further inner parameter is moved: their number counts squared; of a
@@ -54,23 +46,15 @@ long run."""
 
 @dataclass(frozen=True, eq=False)
 class Board:
-    """A run, what is always refitted, and the effects that can be switched.
+    """A run, what is always refitted, and the effects that can be switched."""
 
-    Attributes:
-        fit: The fit whose gross errors, prior and memory of the noise hold throughout.
-        switches: The effects, those found first.
-        estimate: Of every stored column in `fit`, zero for others, (K,), in units of the prior.
-        known: Figures of the fits that were made, by the names of their effects: fitted and held
-            out, mm.
-        reduced: The matrices of all stored columns; the last column is y less what `estimate`
-            explains.
-    """
-
-    fit: Fit
+    fit: Fit  # the fit whose gross errors, prior and memory of the noise hold throughout
     base: Base
-    switches: tuple[Switch, ...]
-    estimate: Array
+    switches: tuple[Switch, ...]  # the effects, those found first
+    estimate: Array  # of every stored column in `fit`, zero for others, (K,), in units of the prior
+    # figures of the fits that were made, by the names of their effects: fitted and held out, mm
     known: Mapping[frozenset[str], tuple[float, float]]
+    # the matrices of all stored columns; the last column is y less what `estimate` explains
     reduced: Reduced
 
     @property

@@ -38,27 +38,18 @@ MARGIN = 0.06
 
 @dataclass(frozen=True, eq=False)
 class Matrices:
-    """The matrices at one size of the noise, or one term of their series.
+    """The matrices at one size of the noise, or one term of their series."""
 
-    Attributes:
-        G: Shape (K + 1, K + 1), as all matrices; columns over the stated uncertainty.
-        H1: mm^2.
-        H3: mm^2, (K, K).
-        F: Of every group left out, (groups, K + 1, K + 1); none where the file holds rows out.
-        tested: ``B^T u^2 B / m`` of the rows that the file marks as held out, mm^2; (0, 0) where
-            there are none.
-        freedom: Effective number of parameters of the base.
-        new_run: Of `Base.new_run`, mm^2.
-    """
-
-    G: Array
-    H1: Array
+    G: Array  # shape (K + 1, K + 1), as all matrices; columns over the stated uncertainty
+    H1: Array  # mm^2
     H2: Array
-    H3: Array
-    F: Array
+    H3: Array  # mm^2, (K, K)
+    F: Array  # of every group left out, (groups, K + 1, K + 1); none where the file holds rows out
+    # ``B^T u^2 B / m`` of the rows that the file marks as held out, mm^2; (0, 0) where there are
+    # none
     tested: Array
-    freedom: float
-    new_run: float
+    freedom: float  # effective number of parameters of the base
+    new_run: float  # of `Base.new_run`, mm^2
 
 
 def _weighted(weights: Array, parts: Sequence[Matrices]) -> Matrices:
@@ -71,40 +62,25 @@ def _weighted(weights: Array, parts: Sequence[Matrices]) -> Matrices:
 
 @dataclass(frozen=True, eq=False)
 class Errors:
-    """Errors of one set of effects.
+    """Errors of one set of effects."""
 
-    Attributes:
-        fitted: As `Fit.rms`, mm.
-        held_out: As `Fit.test_rms`, mm.
-        s: Noise over the stated one.
-        estimate: Of the columns of the set, in units of their prior, (k,).
-    """
-
-    fitted: float
-    held_out: float
-    s: float
-    estimate: Array
+    fitted: float  # as `Fit.rms`, mm
+    held_out: float  # as `Fit.test_rms`, mm
+    s: float  # noise over the stated one
+    estimate: Array  # of the columns of the set, in units of their prior, (k,)
 
 
 @dataclass(frozen=True, eq=False)
 class Reduced:
-    """A run and a base, of which every set of effects can be fitted without the touches.
+    """A run and a base, of which every set of effects can be fitted without the touches."""
 
-    Attributes:
-        first: At the stated noise, with which every fit begins.
-        terms: Coefficients of Chebyshev's polynomials in log s, the constant first.
-        span: Smallest and largest size of the noise that the series serves.
-        is_tested: Whether the file marks rows as held out.
-        count: Rows used.
-        weight: Factor on the uncertainty of a row, as of `Fit.weight`.
-    """
-
-    first: Matrices
+    first: Matrices  # at the stated noise, with which every fit begins
+    # coefficients of Chebyshev's polynomials in log s, the constant first
     terms: tuple[Matrices, ...]
-    span: tuple[float, float]
-    is_tested: bool
-    count: int
-    weight: float
+    span: tuple[float, float]  # smallest and largest size of the noise that the series serves
+    is_tested: bool  # whether the file marks rows as held out
+    count: int  # rows used
+    weight: float  # factor on the uncertainty of a row, as of `Fit.weight`
 
     def errors(self, T: Array) -> Errors:
         """Fit a set of columns: the loop of `fit_run`, from the matrices alone.

@@ -15,18 +15,14 @@ from matstd.diagnosis.reduced.base import Base
 from matstd.twin.frames import Array
 from matstd.twin.model import Effect, Inner, Tunable, is_tunable
 
-NODES = 13
-"""Values of an inner parameter at which columns are computed."""
+NODES = 13  # values of an inner parameter at which columns are computed
 
 MAX_PRINCIPAL, FEWER_PRINCIPAL = 5, 4
 """Most principal columns of one effect; of one that was not found. The fifth moves columns by a
 thousandth."""
 
-MIN_PRINCIPAL = 1e-3
-"""Share of the first one below which a principal column is left out."""
-
-MAX_WIDTH = 3
-"""Parameters of an effect above which its inner parameter stays where it is."""
+MIN_PRINCIPAL = 1e-3  # share of the first one below which a principal column is left out
+MAX_WIDTH = 3  # parameters of an effect above which its inner parameter stays where it is
 
 MAX_MISFIT = 0.02
 """Error of a column between two values, over the change of the columns, up to which the range is
@@ -37,29 +33,20 @@ MAX_HALVINGS = 6
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Switch:
-    """An effect that can be switched.
+    """An effect that can be switched."""
 
-    Attributes:
-        effect: At its present tuning.
-        sd: Standard deviations of its parameters as they are believed in a fit, (K,), base units.
-        is_found: Whether it is part of the model that the diagnosis ends with.
-        alike: Names of switches that the run cannot distinguish from it.
-        columns: Stored ones, all rows, over the stated uncertainty and times `sd`, (N, M); the
-            first K are the effect itself.
-        inner: Its inner parameter that can be moved; None where there is none.
-        values: Of it, ascending, (V,), base units; its present one among them.
-        mixes: Weights of the stored columns in those at the values, (V, K, M).
-        is_fixed: Whether its one column is what a model predicts, whose amount no run determines.
-    """
-
-    effect: Effect
+    effect: Effect  # at its present tuning
+    # standard deviations of its parameters as they are believed in a fit, (K,), base units
     sd: Array
-    is_found: bool
-    alike: tuple[str, ...]
+    is_found: bool  # whether it is part of the model that the diagnosis ends with
+    alike: tuple[str, ...]  # names of switches that the run cannot distinguish from it
+    # stored ones, all rows, over the stated uncertainty and times `sd`, (N, M); the first K are the
+    # effect itself
     columns: Array
-    inner: Inner | None
-    values: Array
-    mixes: Array
+    inner: Inner | None  # its inner parameter that can be moved; None where there is none
+    values: Array  # of it, ascending, (V,), base units; its present one among them
+    mixes: Array  # weights of the stored columns in those at the values, (V, K, M)
+    # whether its one column is what a model predicts, whose amount no run determines
     is_fixed: bool = False
 
     @property

@@ -8,8 +8,7 @@ from scipy.special import fdtrc
 
 from matstd.twin.frames import Array
 
-SMALLEST = 1e-300
-"""Probabilities are not reported smaller than this."""
+SMALLEST = 1e-300  # probabilities are not reported smaller than this
 
 
 def f_tail(ratio: Array | float, k: Array | float, dof: Array | float) -> Array:

@@ -21,32 +21,21 @@ MIN_SCORE_SHARE = 0.5
 """A round takes out only what stands out at least half as far as the farthest touch: chips that
 bend the fit make good touches look bad, until they are out."""
 
-MAX_GROSS_ROUNDS = 30
-"""Most rounds; two touches that alternate would never settle."""
-
-MIN_DOF = 10.0
-"""With fewer degrees of freedom there is no scale by which a touch could stand out."""
+MAX_GROSS_ROUNDS = 30  # most rounds; two touches that alternate would never settle
+MIN_DOF = 10.0  # with fewer degrees of freedom there is no scale by which a touch could stand out
 
 
 @dataclass(frozen=True, eq=False)
 class GrossErrors:
-    """Result of the test of every touch against the fit to the others.
+    """Result of the test of every touch against the fit to the others."""
 
-    Attributes:
-        rows: Which touches are gross errors, (N,).
-        size: Left-out prediction error of every touch, (N,), in units of the stated noise.
-        score: The same in units of its standard deviation, (N,).
-        limit: Score above which a touch is a gross error.
-        too_many: Whether more stood out than accidents can explain, so that none was taken out.
-        standing: Those that stood out then, (N,); None where none did.
-    """
-
-    rows: BoolArray
-    size: Array
-    score: Array
-    limit: float
+    rows: BoolArray  # which touches are gross errors, (N,)
+    size: Array  # left-out prediction error of every touch, (N,), in units of the stated noise
+    score: Array  # the same in units of its standard deviation, (N,)
+    limit: float  # score above which a touch is a gross error
+    # whether more stood out than accidents can explain, so that none was taken out
     too_many: bool = False
-    standing: BoolArray | None = None
+    standing: BoolArray | None = None  # those that stood out then, (N,); None where none did
 
     @property
     def are_many(self) -> bool:

@@ -22,19 +22,12 @@ BoolArray = NDArray[np.bool_]
 
 @dataclass(frozen=True, eq=False)
 class Solution:
-    """Estimates of scaled parameters, and the projection on what they cannot imitate.
+    """Estimates of scaled parameters, and the projection on what they cannot imitate."""
 
-    Attributes:
-        Q: Upper rows of the orthonormal basis of the columns with their prior, (N, P).
-        R: Its triangle, (P, P): covariance ``R^-1 R^-T``.
-        phi: Estimates, (P,), in units of their prior standard deviations.
-        residual: ``y - X phi``, (N,).
-    """
-
-    Q: Array
-    R: Array
-    phi: Array
-    residual: Array
+    Q: Array  # upper rows of the orthonormal basis of the columns with their prior, (N, P)
+    R: Array  # its triangle, (P, P): covariance ``R^-1 R^-T``
+    phi: Array  # estimates, (P,), in units of their prior standard deviations
+    residual: Array  # ``y - X phi``, (N,)
 
     @cached_property
     def leverage(self) -> Array:
@@ -92,17 +85,11 @@ def solve(X: Array, y: Array) -> Solution:
 
 @dataclass(frozen=True, eq=False)
 class LeftOut:
-    """Prediction of groups of touches by a fit to all the others.
+    """Prediction of groups of touches by a fit to all the others."""
 
-    Attributes:
-        error: Observed minus predicted, whitened, (N,); its own noise is 1.
-        squared: Sum over groups of ``error^T cov^-1 error``, cov that of the prediction error.
-        log_det: Sum over groups of ``log det cov``.
-    """
-
-    error: Array
-    squared: float
-    log_det: float
+    error: Array  # observed minus predicted, whitened, (N,); its own noise is 1
+    squared: float  # sum over groups of ``error^T cov^-1 error``, cov that of the prediction error
+    log_det: float  # sum over groups of ``log det cov``
 
     @property
     def rms(self) -> float:

@@ -21,8 +21,7 @@ from matstd.twin.record import IntArray, Touches
 MAX_ROWS_MEMORY = 2500
 """Most rows that a memory is estimated from; more would not improve it and take long."""
 
-MEMORY_PASSES = 3
-"""Turns in which the size of the noise settles."""
+MEMORY_PASSES = 3  # turns in which the size of the noise settles
 
 MAX_CORRELATION = 0.9995
 """Largest correlation from touch to touch that is tried: beyond, it is no noise but a drift."""
@@ -30,22 +29,18 @@ MAX_CORRELATION = 0.9995
 
 @dataclass(frozen=True, slots=True)
 class Memory:
-    """A first-order autoregression of the noise, in units of the stated uncertainty.
+    """A first-order autoregression of the noise, in units of the stated uncertainty."""
 
-    Attributes:
-        correlation: From one touch to the next, or over `step` seconds.
-        step: s between touches for which it holds; 0 where it goes from touch to touch, whatever
-            the time between them.
-        by_place: Whether the touch before is the last one at the same point along the same normal
-            (a nest of probes that read together), and not merely the last one.
-        is_filtered: Whether rows are freed of it. Of a slow memory, which may be a cause that
-            has no name yet, they are not, since what is slow is what shall be explained; each row
-            then counts for less than one.
-    """
-
-    correlation: float
+    correlation: float  # from one touch to the next, or over `step` seconds
+    # s between touches for which it holds; 0 where it goes from touch to touch, whatever the time
+    # between them
     step: float = 0.0
+    # whether the touch before is the last one at the same point along the same normal (a nest of
+    # probes that read together), and not merely the last one
     by_place: bool = False
+    # whether rows are freed of it. Of a slow memory, which may be a cause that has no name yet,
+    # they are not, since what is slow is what shall be explained; each row then counts for less
+    # than one
     is_filtered: bool = True
 
     @property
@@ -66,23 +61,15 @@ class Memory:
 
 @dataclass(frozen=True, eq=False)
 class Whitener:
-    """Filter that makes noise with memory white, for the rows of one fit.
+    """Filter that makes noise with memory white, for the rows of one fit."""
 
-    Attributes:
-        used: Rows of the run that the fit uses, n of them, (N,).
-        u: Their standard uncertainty, (n,), mm.
-        order: Rows such that each, but the first of a chain, stands next to the one before it.
-        before: The row before each, by number among them, -1 for none, (n,).
-        kept: Correlation with it, (n,); zero where there is none.
-        rows: Rows that are kept after the filter, by number; None for all.
-    """
-
-    used: BoolArray
-    u: Array
+    used: BoolArray  # rows of the run that the fit uses, n of them, (N,)
+    u: Array  # their standard uncertainty, (n,), mm
+    # rows such that each, but the first of a chain, stands next to the one before it
     order: IntArray
-    before: IntArray
-    kept: Array
-    rows: IntArray | None = None
+    before: IntArray  # the row before each, by number among them, -1 for none, (n,)
+    kept: Array  # correlation with it, (n,); zero where there is none
+    rows: IntArray | None = None  # rows that are kept after the filter, by number; None for all
 
     def __call__(self, M: Array) -> Array:
         """Columns over all rows of the run (N, K), mm, as whitened columns of the fit."""

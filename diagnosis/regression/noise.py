@@ -15,29 +15,22 @@ PRIOR_DOF = 4.0
 REPLICATE_PLACE = 0.05
 """Touches whose calibrated points lie within this (mm) in one pose are replicates."""
 
-SAME_SHARE = 1e-3
-"""... and within this share of what was probed, on which an axis may be 1 mm long."""
+SAME_SHARE = 1e-3  # ... and within this share of what was probed, on which an axis may be 1 mm long
 
 SAME_READING = 1e-6
 """The same of readings that an encoder took on the way (mm, rad): no two are one place."""
 
-SAME_SIDE = 0.02
-"""Their normals agree within this."""
+SAME_SIDE = 0.02  # their normals agree within this
 
 
 @dataclass(frozen=True, slots=True)
 class Noise:
-    """Noise of a fit in units of the stated uncertainty.
+    """Noise of a fit in units of the stated uncertainty."""
 
-    Attributes:
-        factor: Standard deviation of the noise over the stated one.
-        chi2_ratio: Weighted squared residual per degree of freedom, stated uncertainty.
-        replicates: The factor from replicates alone, or None where there are none.
-    """
-
-    factor: float
+    factor: float  # standard deviation of the noise over the stated one
     dof: float
-    chi2_ratio: float
+    chi2_ratio: float  # weighted squared residual per degree of freedom, stated uncertainty
+    # the factor from replicates alone, or None where there are none
     replicates: float | None = None
     replicates_dof: int = 0
 

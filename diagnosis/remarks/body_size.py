@@ -10,20 +10,15 @@ from matstd.twin.units import T_REF
 
 @dataclass(frozen=True, slots=True)
 class BodySize:
-    """The size of the standard of one run, on which every scale rests.
-
-    Attributes:
-        body: What the run states; None where it states nothing.
-        temperature: Of the standard, on average, degC; None where nothing is known of it.
-        length: Of what was touched, from corner to corner, mm.
-        machine: Lowest and highest temperature of every other sensor, degC: scales of the machine
-            are those at these temperatures.
-    """
+    """The size of the standard of one run, on which every scale rests."""
 
     run: str
-    body: Body | None
+    body: Body | None  # what the run states; None where it states nothing
+    # of the standard, on average, degC; None where nothing is known of it
     temperature: float | None
-    length: float
+    length: float  # of what was touched, from corner to corner, mm
+    # lowest and highest temperature of every other sensor, degC: scales of the machine are those at
+    # these temperatures
     machine: tuple[tuple[str, float, float], ...] = ()
 
     @property

@@ -10,34 +10,20 @@ from matstd.diagnosis.regression import f_probability, solve
 from matstd.twin.frames import Array
 from matstd.twin.record import Instrument, IntArray
 
-MIN_MOMENTS = 20
-"""Moments (rows of the file, or poses) from which a run has a before and an after."""
-
-COMPONENTS = 3
-"""Components of a displacement."""
-
-PRIOR_SD = 10.0
-"""What is believed of it, mm."""
-
-SETTLING_PASSES = 4
-"""Times that the noise is found anew with it; three settle it."""
+MIN_MOMENTS = 20  # moments (rows of the file, or poses) from which a run has a before and an after
+COMPONENTS = 3  # components of a displacement
+PRIOR_SD = 10.0  # what is believed of it, mm
+SETTLING_PASSES = 4  # times that the noise is found anew with it; three settle it
 
 
 @dataclass(frozen=True, slots=True)
 class JumpInOrder:
-    """What is left is displaced from a row on, in a run without times.
+    """What is left is displaced from a row on, in a run without times."""
 
-    Attributes:
-        before: Last line of the run file before it.
-        after: First line after it.
-        size: Displacement, mm.
-        u: Its standard uncertainty, mm.
-    """
-
-    before: int
-    after: int
-    size: float
-    u: float
+    before: int  # last line of the run file before it
+    after: int  # first line after it
+    size: float  # displacement, mm
+    u: float  # its standard uncertainty, mm
 
 
 def jump_in_order(fit: Fit) -> JumpInOrder | None:

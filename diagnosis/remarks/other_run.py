@@ -8,18 +8,12 @@ from matstd.twin.model import Effect
 
 @dataclass(frozen=True, slots=True)
 class EffectOfOtherRun:
-    """An effect that a saved model has of another run, and that is not applied as a rule.
-
-    Attributes:
-        owner: What it belongs to, as its kind says: "probe" or "run".
-        inner: Its inner parameters, as in the file.
-        share: What it made there, rms, mm, beside where the standard stood; 0 where unknown.
-        is_repeated: Whether the touches of this run show a law of that one, too: it is applied.
-    """
+    """An effect that a saved model has of another run, and that is not applied as a rule."""
 
     effect: Effect
-    owner: str
-    inner: Mapping[str, float]
+    owner: str  # what it belongs to, as its kind says: "probe" or "run"
+    inner: Mapping[str, float]  # its inner parameters, as in the file
     run: str
-    share: float
+    share: float  # what it made there, rms, mm, beside where the standard stood; 0 where unknown
+    # whether the touches of this run show a law of that one, too: it is applied
     is_repeated: bool = False

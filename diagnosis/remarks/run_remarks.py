@@ -14,8 +14,7 @@ from matstd.diagnosis.remarks.turns import HarmonicsAlike, harmonics_alike
 from matstd.twin.elastic import short_beams
 from matstd.twin.numbers import rms
 
-MIN_DOF = 30.0
-"""Below so many degrees of freedom only large effects can be seen."""
+MIN_DOF = 30.0  # below so many degrees of freedom only large effects can be seen
 
 MAX_HELD_OUT_RATIO = 2.0
 """Error of held-out touches over the stated noise from which few touches leave all open."""

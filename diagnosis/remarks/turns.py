@@ -8,24 +8,17 @@ from matstd.diagnosis.fit import Fit
 from matstd.twin.frames import Array
 from matstd.twin.model import original_of, traits
 
-MAX_UNEVENNESS = 2e-3
-"""Largest distance of a target from an even spacing, rad: a tenth of a degree."""
-
-MIN_TARGETS = 3
-"""Targets of a turn up to which no harmonics are distinguished."""
+MAX_UNEVENNESS = 2e-3  # largest distance of a target from an even spacing, rad: a tenth of a degree
+MIN_TARGETS = 3  # targets of a turn up to which no harmonics are distinguished
 
 
 @dataclass(frozen=True, slots=True)
 class HarmonicsAlike:
-    """Harmonics of a turn that read as a found one at evenly spaced targets, the lowest first.
-
-    Attributes:
-        found: 0 of a curve, whose harmonics are many.
-    """
+    """Harmonics of a turn that read as a found one at evenly spaced targets, the lowest first."""
 
     axis: str
     targets: int
-    found: int
+    found: int  # 0 of a curve, whose harmonics are many
     others: tuple[int, ...]
 
 

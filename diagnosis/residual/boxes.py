@@ -12,24 +12,16 @@ from matstd.diagnosis.residual.patterns import variables
 from matstd.twin.frames import Array
 from matstd.twin.record import IntArray
 
-MAX_VARIABLES = 3
-"""Most variables that bound a region."""
-
-MIN_TOUCHES_OF_REGION = 12
-"""Fewest touches of a region."""
+MAX_VARIABLES = 3  # most variables that bound a region
+MIN_TOUCHES_OF_REGION = 12  # fewest touches of a region
 
 MAX_SHARE = 0.6
 """Largest share of the touches: an error that is off on most of a travel is the same as one that is
 off the other way on the rest, since the model has its constant."""
 
-MAX_BINS = 16
-"""Bins of a variable between whose borders a region begins and ends."""
-
-MAX_LABELS = 40
-"""Features or set-ups beyond which they are not tried one by one."""
-
-MAX_STARTS = 40
-"""Carriers with one variable that are looked at with a second and a third."""
+MAX_BINS = 16  # bins of a variable between whose borders a region begins and ends
+MAX_LABELS = 40  # features or set-ups beyond which they are not tried one by one
+MAX_STARTS = 40  # carriers with one variable that are looked at with a second and a third
 
 
 class Side(Enum):
@@ -49,18 +41,12 @@ class Condition(NamedTuple):
 
 
 class Bounded(NamedTuple):
-    """A column of the run that may bound a region.
-
-    Attributes:
-        bins: Number of the bin of every touch of the run, (N,).
-        cuts: Values between the bins; none of a label.
-        labels: Names of the bins of a label.
-    """
+    """A column of the run that may bound a region."""
 
     name: str
-    bins: IntArray
-    cuts: tuple[float, ...]
-    labels: tuple[str, ...] = ()
+    bins: IntArray  # number of the bin of every touch of the run, (N,)
+    cuts: tuple[float, ...]  # values between the bins; none of a label
+    labels: tuple[str, ...] = ()  # names of the bins of a label
 
     @property
     def size(self) -> int:

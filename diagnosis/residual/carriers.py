@@ -10,8 +10,7 @@ from matstd.twin.laws import Carrier, carrier_of
 from matstd.twin.machine import Family
 from matstd.twin.record import Touches
 
-SAME_COSINE = 0.99999
-"""Cosine of carriers that no touch of a run distinguishes."""
+SAME_COSINE = 0.99999  # cosine of carriers that no touch of a run distinguishes
 
 
 class Bearer(NamedTuple):

@@ -8,11 +8,8 @@ from matstd.diagnosis.regression import BoolArray, shots
 from matstd.diagnosis.residual.patterns import pairs, variables
 from matstd.twin.record import Touches
 
-NEIGHBOURS = 5
-"""Neighbours of a touch that are looked at."""
-
-MIN_GROSS = 3
-"""Fewer gross errors than this make no crowd."""
+NEIGHBOURS = 5  # neighbours of a touch that are looked at
+MIN_GROSS = 3  # fewer gross errors than this make no crowd
 
 
 def crowds(touches: Touches, allowed: BoolArray, gross: BoolArray) -> dict[tuple[str, str], float]:

@@ -48,45 +48,28 @@ PARTS = ("shift-x", "shift-y", "shift-z", "bias")
 
 
 class Wrong(NamedTuple):
-    """What is wrong in a region.
+    """What is wrong in a region."""
 
-    Attributes:
-        carrier: A component error, or one of `PARTS`.
-        alike: Others that the touches of the region do not distinguish from it.
-        size: By how much it is wrong, mm or rad.
-        u: Standard uncertainty of the size, from the noise.
-        is_angular: Whether it is an angle.
-    """
-
-    carrier: str
-    alike: tuple[str, ...]
-    size: float
-    u: float
-    is_angular: bool
+    carrier: str  # a component error, or one of `PARTS`
+    alike: tuple[str, ...]  # others that the touches of the region do not distinguish from it
+    size: float  # by how much it is wrong, mm or rad
+    u: float  # standard uncertainty of the size, from the noise
+    is_angular: bool  # whether it is an angle
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Region:
-    """Touches that a model predicts wrongly: one error is off there, or they scatter more.
+    """Touches that a model predicts wrongly: one error is off there, or they scatter more."""
 
-    Attributes:
-        conditions: All of them hold in it; bounds in the unit of the column, one of each side for
-            a column.
-        rows: Touches in it, (N,).
-        wrong: The error that is off; None where touches scatter more than others.
-        mean: Mean residual of the touches in it, along the normal, mm.
-        u: Standard uncertainty of the mean, from the noise, mm.
-        rms: Root mean square residual of the same, mm.
-        p_value: Probability of such an error, or of a scatter so much larger than that of the other
-            touches, by chance, for all regions and carriers that were tried.
-    """
-
+    # all of them hold in it; bounds in the unit of the column, one of each side for a column
     conditions: tuple[Condition, ...]
-    rows: BoolArray
-    wrong: Wrong | None
-    mean: float
-    u: float
-    rms: float
+    rows: BoolArray  # touches in it, (N,)
+    wrong: Wrong | None  # the error that is off; None where touches scatter more than others
+    mean: float  # mean residual of the touches in it, along the normal, mm
+    u: float  # standard uncertainty of the mean, from the noise, mm
+    rms: float  # root mean square residual of the same, mm
+    # probability of such an error, or of a scatter so much larger than that of the other touches,
+    # by chance, for all regions and carriers that were tried
     p_value: float
 
 
@@ -125,16 +108,11 @@ def _explained(space: ResidualSpace, fit: Fit, cured: Fit) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class _Constant:
-    """One carrier, off by a constant in a region.
-
-    Attributes:
-        column: Of the carrier, all touches, (N,), mm per mm or rad.
-        drawing: What draws the region, (n + P,); None for the residual.
-    """
+    """One carrier, off by a constant in a region."""
 
     space: ResidualSpace
-    column: Array
-    drawing: Array | None
+    column: Array  # of the carrier, all touches, (N,), mm per mm or rad
+    drawing: Array | None  # what draws the region, (n + P,); None for the residual
 
     def gains(self, rows: BoolArray, variable: Bounded) -> Array:
         """As of `Measure`."""
@@ -265,15 +243,10 @@ def _alike(
 
 
 class _Scatter(NamedTuple):
-    """A larger variance in a region.
+    """A larger variance in a region."""
 
-    Attributes:
-        squares: Of the residual over its own standard deviation, (N,); zero where not in use.
-        used: Touches in use, (N,).
-    """
-
-    squares: Array
-    used: BoolArray
+    squares: Array  # of the residual over its own standard deviation, (N,); zero where not in use
+    used: BoolArray  # touches in use, (N,)
 
     def gains(self, rows: BoolArray, variable: Bounded) -> Array:
         """As of `Measure`."""

@@ -58,29 +58,19 @@ class Driver(NamedTuple):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Partial:
-    """What a run shows of one effect, touch by touch.
+    """What a run shows of one effect, touch by touch."""
 
-    Attributes:
-        driver: What it is drawn over; without a column it is no function of one variable, and `x`
-            is then what it explains.
-        x: Of every touch, in the unit of the driver's column, (M,).
-        explained: By the effect, (M,), mm or rad.
-        observed: The same plus the residual of the whole model, (M,).
-        weight: Of every touch, one over its variance, (M,).
-        shown: Numbers of the touches that see the effect well enough to be drawn as points.
-        rows: Of the run, (M,): those in the fit, then those held out.
-        way: Sign of the last motion where the effect is another for either, (M,), else 0.
-    """
-
+    # what it is drawn over; without a column it is no function of one variable, and `x` is then
+    # what it explains
     driver: Driver
-    x: Array
+    x: Array  # of every touch, in the unit of the driver's column, (M,)
     drawn: Drawn
-    explained: Array
-    observed: Array
-    weight: Array
-    shown: IntArray
-    rows: IntArray
-    way: IntArray
+    explained: Array  # by the effect, (M,), mm or rad
+    observed: Array  # the same plus the residual of the whole model, (M,)
+    weight: Array  # of every touch, one over its variance, (M,)
+    shown: IntArray  # numbers of the touches that see the effect well enough to be drawn as points
+    rows: IntArray  # of the run, (M,): those in the fit, then those held out
+    way: IntArray  # sign of the last motion where the effect is another for either, (M,), else 0
 
 
 def partial(fit: Fit, effect: Effect) -> Partial:

@@ -23,15 +23,10 @@ PATTERN_VARIANCES = np.geomspace(0.3, 3e4, 11) ** 2
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Freed:
-    """Inner products of the functions of a pattern, freed of a model.
+    """Inner products of the functions of a pattern, freed of a model."""
 
-    Attributes:
-        gram: With each other, (K, K).
-        along: With the residual, (K,).
-    """
-
-    gram: Array
-    along: Array
+    gram: Array  # with each other, (K, K)
+    along: Array  # with the residual, (K,)
 
     def scaled(self, spectra: Array) -> Array:
         """`gram` at the expected sizes of every roughness, (L, K, K)."""
@@ -41,22 +36,15 @@ class Freed:
 
 @dataclass(frozen=True, eq=False)
 class TestedPattern:
-    """A pattern with the probability of what its roughnesses hold, and on demand what they hold.
-
-    Attributes:
-        effects: Beside which it was looked for.
-        freed: Its functions, freed of them.
-        p: Probability of so much in white noise, not corrected, (L,).
-        rows: Touches in use over those that were looked at.
-    """
+    """A pattern with the probability of what its roughnesses hold, and on demand what they hold."""
 
     __test__ = False
 
     pattern: Pattern
-    effects: EffectSet
-    freed: Freed
-    p: Array
-    rows: float
+    effects: EffectSet  # beside which it was looked for
+    freed: Freed  # its functions, freed of them
+    p: Array  # probability of so much in white noise, not corrected, (L,)
+    rows: float  # touches in use over those that were looked at
 
     @cached_property
     def _principal(self) -> tuple[Array, Array]:

@@ -15,39 +15,22 @@ from matstd.diagnosis.evidence import ResidualSpace
 from matstd.twin.frames import Array
 from matstd.twin.record import IntArray, Touches
 
-ORDER_ALONE = 12
-"""Half waves over the range of a variable by itself."""
-
-ORDER_PAIR = 9
-"""Half waves of both variables of a pair together."""
-
-ROUGHNESS = (0.3, 0.12, 0.05)
-"""Correlation lengths that are tried, as shares of the range."""
-
-MAX_GROUPS = 150
-"""Labels with more values than this are not tried one by one."""
-
-FULL_BELOW = 4000
-"""Beyond this many touches patterns are looked for in an even choice of so many."""
+ORDER_ALONE = 12  # half waves over the range of a variable by itself
+ORDER_PAIR = 9  # half waves of both variables of a pair together
+ROUGHNESS = (0.3, 0.12, 0.05)  # correlation lengths that are tried, as shares of the range
+MAX_GROUPS = 150  # labels with more values than this are not tried one by one
+FULL_BELOW = 4000  # beyond this many touches patterns are looked for in an even choice of so many
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Pattern:
-    """Features of one or two variables in one direction.
+    """Features of one or two variables in one direction."""
 
-    Attributes:
-        variables: Columns of the run file that it varies with.
-        direction: Along what it acts: "normal", or a direction of the machine.
-        shapes: Functions of the variables, (N, K); all directions share them.
-        part: Deviation along the normal per unit along the direction, (N,), mm per mm.
-        spectra: Expected share of the variance in each feature, one row a roughness, (L, K).
-    """
-
-    variables: tuple[str, ...]
-    direction: str
-    shapes: Array
-    part: Array
-    spectra: Array
+    variables: tuple[str, ...]  # columns of the run file that it varies with
+    direction: str  # along what it acts: "normal", or a direction of the machine
+    shapes: Array  # functions of the variables, (N, K); all directions share them
+    part: Array  # deviation along the normal per unit along the direction, (N,), mm per mm
+    spectra: Array  # expected share of the variance in each feature, one row a roughness, (L, K)
 
     def whitened(self, complement: ResidualSpace, rows: IntArray) -> Array:
         """Deviation along the normal by every function over the noise, (R, K).

@@ -9,14 +9,9 @@ from matstd.diagnosis.residual.patterns import variables
 from matstd.twin.frames import Array
 from matstd.twin.record import Touches
 
-MAX_BINS = 12
-"""Bins of a variable, of equally many touches each."""
-
-MIN_TOUCHES_OF_BIN = 6
-"""Touches of a bin, at least."""
-
-MAX_LABELS = 16
-"""Labels of a feature that are shown one by one."""
+MAX_BINS = 12  # bins of a variable, of equally many touches each
+MIN_TOUCHES_OF_BIN = 6  # touches of a bin, at least
+MAX_LABELS = 16  # labels of a feature that are shown one by one
 
 
 def standardised(fit: Fit) -> Array:
@@ -67,19 +62,13 @@ def binned(
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RankedVariable:
-    """A variable of a run with what the residual does over it.
+    """A variable of a run with what the residual does over it."""
 
-    Attributes:
-        name: Column of the run file, or what parts the touches.
-        values: Of the touches in use, (N,).
-        labels: Names of the values 0, 1, ... of a variable that parts touches in few groups.
-        strength: Mean squared ratio of a bin's mean to its standard error; 1 in pure noise.
-    """
-
-    name: str
-    values: Array
+    name: str  # column of the run file, or what parts the touches
+    values: Array  # of the touches in use, (N,)
+    # names of the values 0, 1, ... of a variable that parts touches in few groups
     labels: tuple[str, ...] | None
-    strength: float
+    strength: float  # mean squared ratio of a bin's mean to its standard error; 1 in pure noise
 
 
 def rank_variables(fit: Fit) -> tuple[RankedVariable, ...]:

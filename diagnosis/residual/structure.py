@@ -38,26 +38,19 @@ class Shape(Enum):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Structure:
-    """One test of a residual for one kind of pattern.
-
-    Attributes:
-        p_value: Probability in white noise, corrected for all the tests made.
-        share: Of the squared residual that it holds beyond chance.
-        columns: Projected features scaled to their most likely size, (N + P, K): a prior of one
-            each; None for tests that name no pattern.
-        period: Of a wave, s; zero for everything else.
-        law: Of a driver that was not recorded: how it acts, as `thermal-expansion(Z)`.
-    """
+    """One test of a residual for one kind of pattern."""
 
     shape: Shape
     variables: tuple[str, ...]
     direction: str
-    p_value: float
-    share: float
+    p_value: float  # probability in white noise, corrected for all the tests made
+    share: float  # of the squared residual that it holds beyond chance
     evidence: float
+    # projected features scaled to their most likely size, (N + P, K): a prior of one each; None for
+    # tests that name no pattern
     columns: Array | None
-    period: float = 0.0
-    law: str = ""
+    period: float = 0.0  # of a wave, s; zero for everything else
+    law: str = ""  # of a driver that was not recorded: how it acts, as `thermal-expansion(Z)`
 
 
 def find_structure(

@@ -11,23 +11,15 @@ from matstd.diagnosis.residual.patterns import directions
 from matstd.twin.frames import Array
 from matstd.twin.record import IntArray, Touches
 
-MIN_PERIOD_TOUCHES = 4.0
-"""Shortest period, in mean distances of touches."""
+MIN_PERIOD_TOUCHES = 4.0  # shortest period, in mean distances of touches
 
 MIN_PERIOD_STEPS = 2.0
 """Shortest period in usual steps between times: a faster wave looks like a slower one."""
 
-MIN_TURNS = 0.5
-"""Lowest frequency, in turns over the run: what is slower is no wave but a drift."""
-
-OVERSAMPLING = 2.0
-"""Scanned frequencies per resolvable one."""
-
-MAX_FREQUENCIES = 800
-"""Most scanned frequencies."""
-
-FREQUENCIES_AT_A_TIME = 64
-"""Frequencies that are tried at a time."""
+MIN_TURNS = 0.5  # lowest frequency, in turns over the run: what is slower is no wave but a drift
+OVERSAMPLING = 2.0  # scanned frequencies per resolvable one
+MAX_FREQUENCIES = 800  # most scanned frequencies
+FREQUENCIES_AT_A_TIME = 64  # frequencies that are tried at a time
 
 REFINEMENT_POINTS = 8
 """Points of the scan around the best frequency, and how many times it is repeated."""
@@ -36,19 +28,14 @@ REFINEMENTS = 3
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Wave:
-    """The best wave of a scan.
-
-    Attributes:
-        p_value: Probability by chance of the best, not corrected for their number.
-        period: Of the best, s.
-        columns: Whitened sine and cosine, (N, 2), so large that a prior of one leaves them free.
-    """
+    """The best wave of a scan."""
 
     count: int
-    p_value: float
+    p_value: float  # probability by chance of the best, not corrected for their number
     drop: float
-    period: float
+    period: float  # of the best, s
     direction: str
+    # whitened sine and cosine, (N, 2), so large that a prior of one leaves them free
     columns: Array
 
 

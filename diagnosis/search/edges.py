@@ -20,8 +20,7 @@ from matstd.twin.record import IntArray, Touches
 MAX_EDGE_LENGTH = 8
 """Touches from an edge that are looked at; a slip farther inside is a crowd to begin with."""
 
-MIN_EDGE_ERRORS = 2
-"""Gross errors at an edge that may be no accidents."""
+MIN_EDGE_ERRORS = 2  # gross errors at an edge that may be no accidents
 
 
 def unexplained_near_slip(

@@ -25,29 +25,19 @@ from matstd.twin.machine import LETTERS
 from matstd.twin.model import Effect, Wave, original_of, traits
 from matstd.twin.record import Touches
 
-MAX_STRONGEST_ORDER = 4
-"""The strongest wave of a period is at most its fourth."""
-
-MAX_PERIODS = 4
-"""Most periods of one component error of one axis."""
+MAX_STRONGEST_ORDER = 4  # the strongest wave of a period is at most its fourth
+MAX_PERIODS = 4  # most periods of one component error of one axis
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class WiderSearch:
-    """A search with further candidates.
+    """A search with further candidates."""
 
-    Attributes:
-        candidates: All of them.
-        new: Names of those that are new, of which the set must have one.
-        start: A set to begin with.
-        share: Held-out error with them, over that without, below which they are taken.
-        is_alone: Whether only one of them may be taken, and only if nothing remains beside it.
-    """
-
-    candidates: tuple[Effect, ...]
-    new: frozenset[str]
-    start: tuple[ScaledEffect, ...] = ()
-    share: float = 1.0
+    candidates: tuple[Effect, ...]  # all of them
+    new: frozenset[str]  # names of those that are new, of which the set must have one
+    start: tuple[ScaledEffect, ...] = ()  # a set to begin with
+    share: float = 1.0  # held-out error with them, over that without, below which they are taken
+    # whether only one of them may be taken, and only if nothing remains beside it
     is_alone: bool = False
 
 

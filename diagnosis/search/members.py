@@ -26,15 +26,10 @@ LEFT_OUT = ("time_s", "setup")
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Member:
-    """An effect in a set, on a point of its grid or between two.
+    """An effect in a set, on a point of its grid or between two."""
 
-    Attributes:
-        signature: Of this effect alone, with the tries of its grid.
-        scale: Factor on its usual size.
-    """
-
-    signature: Signatures
-    scale: float
+    signature: Signatures  # of this effect alone, with the tries of its grid
+    scale: float  # factor on its usual size
 
     @property
     def effect(self) -> Effect:
@@ -55,15 +50,11 @@ class Member:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class EffectSubset:
-    """A set of effects with what it explains in the projection.
-
-    Attributes:
-        prior: Log prior of its members together.
-    """
+    """A set of effects with what it explains in the projection."""
 
     members: tuple[Member, ...]
     effects: EffectSet
-    prior: float
+    prior: float  # log prior of its members together
 
     @property
     def evidence(self) -> float:
@@ -87,27 +78,19 @@ class EffectSubset:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Verified:
-    """Tests of one member with all the others in place; a later one is 0 where an earlier fails.
-
-    Attributes:
-        p_value: Probability by chance, corrected for grid and number of candidates.
-        evidence: Gain of log evidence by it.
-        held_out: Held-out error with it over that without it.
-        density: Gain of the held-out log predictive density by it.
-        touches: Effective number it explains, ``(sum d^2)^2 / sum d^4`` of what it changes.
-        domain_density: Least gain of the log predictive density over domains of which blocks are
-            left out (parts of the time, set-ups).
-        is_preferred: Whether no driver that was not recorded is more likely.
-    """
+    """Tests of one member with all the others in place; a later one is 0 where an earlier fails."""
 
     member: Member
-    p_value: float
-    evidence: float
-    held_out: float = 0.0
-    density: float = 0.0
+    p_value: float  # probability by chance, corrected for grid and number of candidates
+    evidence: float  # gain of log evidence by it
+    held_out: float = 0.0  # held-out error with it over that without it
+    density: float = 0.0  # gain of the held-out log predictive density by it
+    # effective number it explains, ``(sum d^2)^2 / sum d^4`` of what it changes
     touches: float = 0.0
+    # least gain of the log predictive density over domains of which blocks are left out (parts of
+    # the time, set-ups)
     domain_density: float = 0.0
-    is_preferred: bool = True
+    is_preferred: bool = True  # whether no driver that was not recorded is more likely
 
     @property
     def stands(self) -> bool:

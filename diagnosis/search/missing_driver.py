@@ -42,15 +42,10 @@ SENSOR = "unrecorded"
 
 @dataclass(frozen=True)
 class Unrecorded:
-    """A law after a temperature ``T = 20 degC + sum_k a_k cos(pi k t/t_end)`` that is not known.
+    """A law after a temperature ``T = 20 degC + sum_k a_k cos(pi k t/t_end)`` that is not known."""
 
-    Attributes:
-        law: The same after a sensor, `SENSOR`.
-        half_waves: Of the temperature over a run, one of `COURSES`.
-    """
-
-    law: Effect
-    half_waves: int = min(COURSES)
+    law: Effect  # the same after a sensor, `SENSOR`
+    half_waves: int = min(COURSES)  # of the temperature over a run, one of `COURSES`
 
     kind = "unrecorded"
 

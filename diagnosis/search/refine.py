@@ -23,8 +23,7 @@ from matstd.diagnosis.fit import continuous_inner, spacing
 from matstd.twin.frames import Array
 from matstd.twin.model import Effect, Tunable, is_tunable
 
-SCAN_POINTS = 9
-"""Points of every scan, over one distance of the grid to either side."""
+SCAN_POINTS = 9  # points of every scan, over one distance of the grid to either side
 
 MAX_SCANS = 10
 """Most scans, each four times finer than the one before: an effect of a thousand times the noise
@@ -37,8 +36,7 @@ MAX_SWEEPS = 6
 """Most turns through the inner parameters of an effect that has several: the best value of one
 depends on the others."""
 
-SETTLED_GAIN = 0.01
-"""Gain of log evidence in one turn below which they are settled."""
+SETTLED_GAIN = 0.01  # gain of log evidence in one turn below which they are settled
 
 
 def refined(base: EffectSet, effect: Effect, levels: int = MAX_SCANS) -> tuple[ScaledEffect, float]:

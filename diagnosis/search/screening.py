@@ -39,11 +39,8 @@ WHOLE_BELOW = 4000
 """Up to so many touches the whole library is searched at every point of its grids; beyond, a choice
 of as many touches screens it first."""
 
-MAX_CANDIDATES = 40
-"""Candidates that a screening lets through."""
-
-MAX_POINTS = 12
-"""Best points of a candidate's grid that it lets through."""
+MAX_CANDIDATES = 40  # candidates that a screening lets through
+MAX_POINTS = 12  # best points of a candidate's grid that it lets through
 
 
 MOST_SETS = 1500.0
@@ -51,25 +48,19 @@ MOST_SETS = 1500.0
 unexplained one three hundred; long records of many related sensors need more, and a remark says so
 when the limit ended the search."""
 
-UNIT_CHARGE_SIZE = 5e7
-"""Touches times squared columns from which a set counts for more than one."""
+UNIT_CHARGE_SIZE = 5e7  # touches times squared columns from which a set counts for more than one
 
 USUAL_POOL = 1.3e6
 """Touches times columns of all candidates in a usual run; a set of a small one counts for less."""
 
-MIN_CHARGE = 0.1
-"""Least charge of a set."""
+MIN_CHARGE = 0.1  # least charge of a set
 
 
 @dataclass(slots=True)
 class Budget:
-    """Number of sets that searches may still try, shared; once spent, they return what they have.
+    """Number of sets that searches may still try, shared; then they return what they have."""
 
-    Attributes:
-        left: Number of sets of ordinary size.
-    """
-
-    left: float = MOST_SETS
+    left: float = MOST_SETS  # number of sets of ordinary size
 
     def spend(self, touches: int, columns: int, pool: int) -> None:
         """Charge for one set, and for all columns of the pool beside it."""
@@ -99,15 +90,11 @@ def tried(grids: Sequence[Grid]) -> int:
 
 @dataclass(frozen=True, eq=False)
 class Library:
-    """Candidate effects with what is needed to search among them in one run.
-
-    Attributes:
-        sample: Signatures of all of them over the touches, or over an even choice of many.
-    """
+    """Candidate effects with what is needed to search among them in one run."""
 
     complement: ResidualSpace
     grids: tuple[Grid, ...]
-    sample: Signatures
+    sample: Signatures  # signatures of all of them over the touches, or over an even choice of many
 
     @classmethod
     def of(

@@ -64,11 +64,8 @@ from matstd.twin.numbers import rms
 
 Way = TypeVar("Way")
 
-MAX_ROUNDS = 4
-"""Most rounds of looking for gross errors and effects in turn; a usual run needs two."""
-
-MAX_SCREENINGS = 3
-"""Most screenings of the library in one round of a long run."""
+MAX_ROUNDS = 4  # most rounds of looking for gross errors and effects in turn; a usual run needs two
+MAX_SCREENINGS = 3  # most screenings of the library in one round of a long run
 
 MAX_NOISE_SHARE = 0.7
 """Share of the noise, or of the widening of the prior, below which the search is repeated beside
@@ -81,30 +78,23 @@ MAX_NAMELESS = 3
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SearchState:
-    """Result of the search at given gross errors.
+    """Result of the search at given gross errors."""
 
-    Attributes:
-        base: The starting model, and what the user added, fitted.
-        smooth: Tests for patterns in what the starting model leaves.
-        nameless: Patterns without a name that had to be put beside the set.
-        drifts: Laws of drivers that were not recorded, whose patterns are among these.
-        chances: Probabilities by chance that rest on blocks left out, by the name of the effect.
-        is_weighed: Whether the set was chosen by prediction, and no other may stand in for it.
-        is_ended: Whether the search was ended by its limit of sets.
-    """
-
-    base: Fit
+    base: Fit  # the starting model, and what the user added, fitted
     library: Library
     search: Search
     chosen: EffectSubset
-    smooth: PatternTests
+    smooth: PatternTests  # tests for patterns in what the starting model leaves
     at_start: tuple[Structure, ...]
     left: tuple[Structure, ...]
-    nameless: tuple[Structure, ...]
+    nameless: tuple[Structure, ...]  # patterns without a name that had to be put beside the set
+    # laws of drivers that were not recorded, whose patterns are among these
     drifts: tuple[ScaledEffect, ...] = ()
+    # probabilities by chance that rest on blocks left out, by the name of the effect
     chances: Mapping[str, float] = field(default_factory=dict)
+    # whether the set was chosen by prediction, and no other may stand in for it
     is_weighed: bool = False
-    is_ended: bool = False
+    is_ended: bool = False  # whether the search was ended by its limit of sets
 
     @property
     def effects(self) -> tuple[ScaledEffect, ...]:

@@ -58,8 +58,7 @@ MAX_CARRIED_SETS = 4
 printer's frame stops at two effects in white noise, takes the memory of its noise for patterns and
 states uncertainties a third too small."""
 
-MAX_TURNS = 3
-"""Most turns of growing a set and of refining it."""
+MAX_TURNS = 3  # most turns of growing a set and of refining it
 
 USUAL_SET_SIZE = 6
 """Effects at which a search is reported as nearly done; it continues while more pass."""

@@ -16,19 +16,14 @@ the usual size, and the estimate must not be drawn to zero."""
 
 @dataclass(frozen=True, slots=True, eq=False)
 class DiagnosisTask:
-    """What is diagnosed: a run, the starting model, and what is believed of it.
-
-    Attributes:
-        is_known: Whether the prior is an earlier fit, rather than what is usual.
-        memory: Of the noise; None for white noise.
-        alone: Prior of the starting model by itself, where `prior` is what suits it beside effects.
-    """
+    """What is diagnosed: a run, the starting model, and what is believed of it."""
 
     run: Run
     model: Model
     prior: Prior
-    is_known: bool = False
-    memory: Memory | None = None
+    is_known: bool = False  # whether the prior is an earlier fit, rather than what is usual
+    memory: Memory | None = None  # of the noise; None for white noise
+    # prior of the starting model by itself, where `prior` is what suits it beside effects
     alone: Prior | None = None
 
     def fit(

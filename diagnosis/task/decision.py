@@ -4,21 +4,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-CONFORMITY = 0.95
-"""Probability that a feature is what it is said to be: the default of the rule."""
+CONFORMITY = 0.95  # probability that a feature is what it is said to be: the default of the rule
 
 
 @dataclass(frozen=True, slots=True)
 class Guarded:
-    """Limits of a deviation with their guard bands.
+    """Limits of a deviation with their guard bands."""
 
-    Attributes:
-        tolerance: Width of the zone, even about the nominal surface, mm.
-        guard: Width of the guard band at each limit, mm.
-    """
-
-    tolerance: float
-    guard: float
+    tolerance: float  # width of the zone, even about the nominal surface, mm
+    guard: float  # width of the guard band at each limit, mm
 
     @property
     def accepted(self) -> float:

@@ -51,15 +51,10 @@ _FAR = 20.0  # logarithm of how much less probable than the most probable s_b: l
 
 @dataclass(frozen=True, eq=False)
 class Expected:
-    """The error of the next result: a mixture of normal distributions about zero.
+    """The error of the next result: a mixture of normal distributions about zero."""
 
-    Attributes:
-        probability: Probability of every component, (M,).
-        variance: Variance of every component, (M,), mm^2.
-    """
-
-    probability: Array
-    variance: Array
+    probability: Array  # probability of every component, (M,)
+    variance: Array  # variance of every component, (M,), mm^2
 
     def half_width(self, level: float) -> float:
         """Half the interval that holds a share of the results, mm."""
@@ -106,15 +101,10 @@ def _averaged(p: Array, variance: Array) -> Expected:
 
 @dataclass(frozen=True, eq=False)
 class _Covariance:
-    """Covariance of J places: r coordinates are separate, the others share one variance.
+    """Covariance of J places: r coordinates are separate, the others share one variance."""
 
-    Attributes:
-        separate: (r, r).
-        beside: Variance in every other direction.
-    """
-
-    separate: Array
-    beside: float
+    separate: Array  # (r, r)
+    beside: float  # variance in every other direction
 
     @staticmethod
     def sum(weights: Array, of: "Sequence[_Covariance]") -> "_Covariance":
@@ -128,26 +118,18 @@ class _Frame:
     """Visits in coordinates that separate features, poses and calibration.
 
     The first coordinate is that of what all places share, ``1 / sqrt(J)``.
-
-    Attributes:
-        places: Their number J.
-        others: Number of directions beside the r coordinates.
-        mean: Mean of the visits, (r,).
-        within: Deviations of every visit from the mean, (n, r).
-        mean_beside: Sum of squares of the mean in the other directions.
-        within_beside: Of all visits about it.
-        of_machine: What may add to its error: by region, by feature, by pose, by place, those that
-            there are several of.
-        of_visit: What may change: all places as one, by feature, by pose, by place.
     """
 
-    places: int
-    others: int
-    mean: Array
-    within: Array
-    mean_beside: float
-    within_beside: float
+    places: int  # their number J
+    others: int  # number of directions beside the r coordinates
+    mean: Array  # mean of the visits, (r,)
+    within: Array  # deviations of every visit from the mean, (n, r)
+    mean_beside: float  # sum of squares of the mean in the other directions
+    within_beside: float  # of all visits about it
+    # what may add to its error: by region, by feature, by pose, by place, those that there are
+    # several of
     of_machine: tuple[_Covariance, ...]
+    # what may change: all places as one, by feature, by pose, by place
     of_visit: tuple[_Covariance, ...]
     of_calibration: _Covariance
 

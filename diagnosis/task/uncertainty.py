@@ -40,32 +40,21 @@ _MOST, _LEAST = 1e4, 0.5  # degrees of freedom: as good as infinite, and fewer t
 
 @dataclass(frozen=True, eq=False)
 class TaskUncertainty:
-    """The budget of a task.
-
-    Attributes:
-        faces: Number of features that the places are on.
-        bias: b, mm.
-        u_cal: Standard uncertainty of b by the calibration, mm.
-        u_p: Standard uncertainty of one visit, mm.
-        spread: Root mean square of the places' means about b, mm.
-        expected: What calibration lets expect of it, mm.
-        u_w: Standard uncertainty by the workpieces, mm.
-        u: Combined standard uncertainty of a result that is corrected for b, mm.
-        by_face: Name of every feature, mean of its places and their spread about it, mm.
-    """
+    """The budget of a task."""
 
     visits: int
     places: int
-    faces: int
+    faces: int  # number of features that the places are on
     poses: int
-    bias: float
-    u_cal: float
-    u_p: float
-    spread: float
-    expected: float
-    u_w: float
-    u: float
+    bias: float  # b, mm
+    u_cal: float  # standard uncertainty of b by the calibration, mm
+    u_p: float  # standard uncertainty of one visit, mm
+    spread: float  # root mean square of the places' means about b, mm
+    expected: float  # what calibration lets expect of it, mm
+    u_w: float  # standard uncertainty by the workpieces, mm
+    u: float  # combined standard uncertainty of a result that is corrected for b, mm
     dof: float
+    # name of every feature, mean of its places and their spread about it, mm
     by_face: tuple[tuple[str, float, float], ...]
 
     @property

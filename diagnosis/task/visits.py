@@ -28,27 +28,19 @@ _TURNED = 6.0 * DEG  # between rotary readings of such visits: a standard may be
 
 @dataclass(frozen=True, eq=False)
 class Visits:
-    """Deviations of J places in n visits.
+    """Deviations of J places in n visits."""
 
-    Attributes:
-        deviation: Measured beyond what a model predicts, the standard placed by its datum
-            features, (n, J), mm.
-        face: Feature of every place, (J,).
-        pose: Table pose of every place, (J,).
-        region: Region of the machine, by the half of its range that every linear axis is in, (J,).
-        shared: Deviation per standard uncertainty of everything that the calibration leaves
-            unknown, the datum features included, (J, Q), mm.
-        lost: Places that not every visit has.
-        gross: Places left out because a visit met something else there.
-    """
-
+    # measured beyond what a model predicts, the standard placed by its datum features, (n, J), mm
     deviation: Array
-    face: Labels
-    pose: np.ndarray
+    face: Labels  # feature of every place, (J,)
+    pose: np.ndarray  # table pose of every place, (J,)
+    # region of the machine, by the half of its range that every linear axis is in, (J,)
     region: np.ndarray
+    # deviation per standard uncertainty of everything that the calibration leaves unknown, the
+    # datum features included, (J, Q), mm
     shared: Array
-    lost: int = 0
-    gross: int = 0
+    lost: int = 0  # places that not every visit has
+    gross: int = 0  # places left out because a visit met something else there
 
     def __len__(self) -> int:
         return len(self.deviation)

@@ -23,8 +23,7 @@ RUNS = {"spring": {}, "summer": {}, "after_crash": CRASH}
 
 MACHINE, SEED, POSES = "hsm600u", 5, 6
 
-GROWTH = 7.0
-"""Growth of the spindle along Z with 25 minutes, in every run, µm."""
+GROWTH = 7.0  # growth of the spindle along Z with 25 minutes, in every run, µm
 
 
 def write(folder: Path = HERE) -> None:

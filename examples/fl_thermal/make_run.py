@@ -32,8 +32,7 @@ PROBES = {
 """Point (mm) and direction of every probe: assumed, see above. With two points in a pair the free
 set-up gives every probe a zero of its own."""
 
-NOISE = 0.1 * UM
-"""Sample-to-sample scatter of the probes, one standard deviation."""
+NOISE = 0.1 * UM  # sample-to-sample scatter of the probes, one standard deviation
 
 FIRST, EVERY = 3, 5
 """Of the one-minute record a row every five minutes; so begun, every change of speed falls within

@@ -34,8 +34,7 @@ ASSUMED = {"ECX": 7.0 * URAD, "coupling(ECX,Z)": -36.0 * URAD, "coupling(EZZ,X)"
 # ASSUMED: after 8 h the screws have grown by 298 ppm along Y (so that holes are 92 um off, as in
 # Fig. 22) and by -33 ppm along X. The models know this growth exactly: nothing here measures it.
 WARM = {"EYY": 298e-6 * 250.0, "EXX": -33e-6 * 375.0}
-LASER, LEVEL = 1.0 * UM, 1.0 * URAD
-"""Standard uncertainties of one reading."""
+LASER, LEVEL = 1.0 * UM, 1.0 * URAD  # standard uncertainties of one reading
 
 LINES = {1: (-85.0, -500.0), 2: (250.0, -500.0), 3: (250.0, 0.0), 4: (150.0, -500.0)}
 """ASSUMED: height and Z of the four lines along X; the paper draws them without numbers."""

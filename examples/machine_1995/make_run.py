@@ -22,21 +22,15 @@ from simulator_experiment import MACHINES, constant, random_experiment  # noqa: 
 
 LABEL, SEED, POSES = "hmc1995", 1995, 6
 
-NOISE = 2.0e-3
-"""Of one touch, mm: a probe of that time."""
+NOISE = 2.0e-3  # of one touch, mm: a probe of that time
 
 SLOPES = {"EXX": 90.0e-3 / 750.0, "EZZ": 157.0e-3 / 500.0, "ECX": 58.0e-6 / 750.0}
 SLOPES |= {"EAZ": 223.0e-6 / 500.0}
 """Errors that grow along their axis, mm/mm and rad/mm."""
 
-SQUARENESS = {"EA0Z": 73.0e-6}
-"""Between Y and Z, rad."""
-
-DRIFT, MINUTES = 82.0, 90.0
-"""Of the datum of Z after switching on, µm, and its time constant."""
-
-SCREW = 12.0
-"""Growth of the screw of Y, a steel one, µm/(m K)."""
+SQUARENESS = {"EA0Z": 73.0e-6}  # between Y and Z, rad
+DRIFT, MINUTES = 82.0, 90.0  # of the datum of Z after switching on, µm, and its time constant
+SCREW = 12.0  # growth of the screw of Y, a steel one, µm/(m K)
 
 WARMTH = 4.0
 """Factor on the temperature of that screw in the simulator's usual experiment: 12 K in the end."""

@@ -18,11 +18,8 @@ from simulator_runs import simulated_runs  # noqa: E402
 
 WEEKS, FIRST = 10, date(2026, 1, 12)
 
-JUMP, AFTER = 15.0e-3, 4
-"""The line of the table axis C moves in X, mm, after so many runs."""
-
-DRIFT = -4.0e-6
-"""Squareness of Y to X from week to week, rad."""
+JUMP, AFTER = 15.0e-3, 4  # the line of the table axis C moves in X, mm, after so many runs
+DRIFT = -4.0e-6  # squareness of Y to X from week to week, rad
 
 MACHINE, SEED, POSES = "hsm600u", 11, 3
 

@@ -24,7 +24,6 @@ from matstd.twin.units import UM, URAD
 from matstd.twin.words import did_you_mean
 
 BLOCK = 10_000  # rows of a table that are computed at once: a second or two, some hundred MB
-
 ERRORS = "-errors"  # ending of the name of a machine's error file
 
 Poses = str | Path | tuple[Array, Array]

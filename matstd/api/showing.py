@@ -47,9 +47,7 @@ from matstd.twin.machine import Chain, Family, Ranges
 from matstd.twin.model import Effect
 from matstd.twin.units import HOUR
 
-DRAWN_TOOL_LENGTH = 150.0
-"""Of the tool that is drawn unless another is stated, mm."""
-
+DRAWN_TOOL_LENGTH = 150.0  # of the tool that is drawn unless another is stated, mm
 DURATION = 8.0 * HOUR  # after the start over which drifts are shown at least, s: a shift
 
 

@@ -52,7 +52,6 @@ STEP_OF_PLACE, MOST_PLACES = 10.0, 3
 (half a second of processor each)."""
 
 _GRID = 200  # points a side by which areas are counted: to 1 %
-
 ROUNDING = 1e-6  # by which a travel may miss a whole millimetre or degree
 
 

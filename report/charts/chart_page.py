@@ -25,7 +25,6 @@ from matstd.report.numbers import digits, plural, sentence, signed
 from matstd.report.style import BLUE, INK, ORANGE, RED, SOFT, WASH, Figure, figure, plain
 
 ACROSS, HEIGHT = 2, 2.35  # charts side by side, and the height of a row, inch
-
 MOST_TICKS = 8  # dates that are written below a chart
 
 

@@ -18,7 +18,6 @@ from matstd.report.geometry import estimate_words, quantity_name, shown_unit
 from matstd.report.numbers import digits, p_value, percent, plural, signed
 
 WEEK = 7.0  # days of the unit of time in which a drift is reported
-
 BY_CHANCE = 0.0027  # share of normal values beyond three standard deviations
 
 

@@ -27,7 +27,6 @@ from matstd.twin.sampling import spread_rows
 from matstd.twin.units import MINUTE, UM
 
 LONGEST_NAME = 32  # letters of a label
-
 LINES, SHARES = 6, 16  # errors that are drawn along the path, and as bars, at most
 
 
@@ -81,7 +80,6 @@ def _size(share: Share) -> str:
 
 
 SHOWN = 0.06  # share of the path's size as which its largest deviation is drawn
-
 DRAWN_POINTS = 6000  # points that are drawn at most
 
 
@@ -142,7 +140,6 @@ def _path(ax: Any, done: Compensated, rows: np.ndarray) -> None:
 
 
 BARS = 16  # errors that are drawn at most
-
 LEAST = 1e-3  # µm: a logarithmic scale begins there, at a nanometre
 
 

@@ -15,7 +15,6 @@ from matstd.twin.record import Setup, at_poses
 from matstd.twin.sampling import grid_points
 
 COUNTS = (11, 11, 9)  # places along the three linear axes
-
 _SHARES = (0.5, 0.15, 0.85)  # of the range of every rotary axis, at which the field is worked out
 
 

@@ -27,9 +27,7 @@ from matstd.report.drawing.views import draw_from, draw_top
 from matstd.twin.errors import NotBuildable
 from matstd.twin.files import written_whole
 
-DRAWING = ("drawing.pdf", "drawing.svg")
-"""Names of the files."""
-
+DRAWING = ("drawing.pdf", "drawing.svg")  # names of the files
 _SCALES = (2.0, 1.0, 0.5, 0.2, 0.1, 0.05)  # of ISO 5455
 _SMALLEST = 0.5  # scale of the views below which the sheet is rather larger
 _SECTIONS = (2.0, 1.0)  # scales of sections, the first that finds room

@@ -10,9 +10,7 @@ from matstd.report.drawing.sections import BALL_CUT, FACE_CUT, HOLE_CUT, section
 from matstd.report.drawing.sheet import Sheet, View
 from matstd.twin.frames import Array
 
-BELOW = 42.0
-"""How far the marks of the view from above reach below it, mm of paper."""
-
+BELOW = 42.0  # how far the marks of the view from above reach below it, mm of paper
 _FRAME, _DIMENSION = 27.0, 35.0  # mm of paper below the view from above
 _HALF, _BACK = 3.6, 14.0  # mm of paper: half of a mark of a cut, and how far it reaches back
 

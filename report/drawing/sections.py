@@ -15,9 +15,7 @@ from matstd.report.drawing.sheet import HATCH, THIN, WIDE, Sheet, View, ratio
 from matstd.twin.units import DEG
 
 BALL_CUT, HOLE_CUT, FACE_CUT = "D", "E", "F"  # letters of the sections; A, B and C are datums
-
 _FARTHER = 0.01  # mm of height that count as much as a millimetre along y
-
 LARGE = 40.0  # half side of a face from which its section is drawn, mm
 
 

@@ -25,18 +25,11 @@ class Paper:
 
 
 A2, A1, A0 = Paper("A2", 594.0, 420.0), Paper("A1", 841.0, 594.0), Paper("A0", 1189.0, 841.0)
-PAPERS = (A2, A1, A0)
-"""Papers of drawings, the smallest first."""
-
+PAPERS = (A2, A1, A0)  # papers of drawings, the smallest first
 WIDE, THIN = 0.5, 0.25  # lines of ISO 128-2, mm
-
 HATCH = "hatch"  # filling of a cut solid (ISO 128-3)
-
 LETTER_HEIGHT = 2.5  # height of lettering, mm (ISO 3098-1); smaller letters do not survive a copy
-
-ROW = 5.2
-"""Height of a row of a table, mm."""
-
+ROW = 5.2  # height of a row of a table, mm
 _POINT = 72.0 / 25.4  # points a millimetre
 _MARGIN, _BINDING = 10.0, 20.0
 _FIELD, _GRID = 50.0, 5.0  # mm: length and width of a reference field in the border (ISO 5457)
@@ -61,16 +54,11 @@ class View:
 
 @dataclass(frozen=True, slots=True)
 class Block:
-    """Something that may stand anywhere on a sheet.
+    """Something that may stand anywhere on a sheet."""
 
-    Attributes:
-        width: Mm of paper.
-        height: The same.
-        draw: Draws it on a sheet, from the x of its left and the y of its upper edge.
-    """
-
-    width: float
-    height: float
+    width: float  # mm of paper
+    height: float  # the same
+    # draws it on a sheet, from the x of its left and the y of its upper edge
     draw: "Callable[[Sheet, float, float], None]"
 
 

@@ -25,12 +25,8 @@ from matstd.twin.errors import NotBuildable
 from matstd.twin.units import DEG
 from matstd.twin.versions import versions
 
-COLUMN = 154.0
-"""Width of every table and note, mm of paper."""
-
-TITLE = (180.0, 48.0)
-"""Width and height of the title block of ISO 7200, mm of paper."""
-
+COLUMN = 154.0  # width of every table and note, mm of paper
+TITLE = (180.0, 48.0)  # width and height of the title block of ISO 7200, mm of paper
 _FLAT = 10_000.0  # mm: a ball of 3 mm cannot distinguish such a face from a plane
 _HEADING = 9.0  # mm above a table, for its title
 _LINE = 4.2  # mm from a line of a note to the next
@@ -40,23 +36,14 @@ _ERRORS = 2  # dominant errors that a row names
 
 @dataclass(frozen=True, slots=True)
 class Issuer:
-    """Who answers for a drawing.
+    """Who answers for a drawing."""
 
-    Attributes:
-        author: Responsible for the design.
-        organisation: Whom the author works for.
-        mass: Mass of body and balls, kg.
-        approved: Who approved the drawing.
-        date: Date of its issue.
-        make: The construction that the workshop makes.
-    """
-
-    author: str
-    organisation: str
-    mass: float
-    approved: str = "not stated"
-    date: str = "not stated"
-    make: Construction = Construction.BILLET
+    author: str  # responsible for the design
+    organisation: str  # whom the author works for
+    mass: float  # mass of body and balls, kg
+    approved: str = "not stated"  # who approved the drawing
+    date: str = "not stated"  # date of its issue
+    make: Construction = Construction.BILLET  # the construction that the workshop makes
 
 
 def blocks_of(standard: Standard, details: Details, make: Construction) -> list[Block]:

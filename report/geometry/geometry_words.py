@@ -37,7 +37,6 @@ SPANS = (Quantity.STRAIGHTNESS, Quantity.ANGULAR, Quantity.ROTARY_MOTION)
 """Curves, reported by their peak to valley."""
 
 CLEAR = 2.0  # standard uncertainties from which on a quantity is worth a line on the console
-
 NOTED = 8  # quantities reported on the console
 
 

@@ -24,7 +24,6 @@ from matstd.twin.record import Touches
 from matstd.twin.units import UM
 
 MAX_NAMED_CHANGES = 4  # changes of one run that a sentence lists, the largest over the travel first
-
 NEARLY = 3.0  # standard uncertainties from which a change below the limit is mentioned
 
 

@@ -71,11 +71,8 @@ _SHAPES = {
     "course": "what is not known of a driver that was not recorded",
     "curve": "a smooth curve without a formula",
 }
-FEW_TOUCHES = 60
-"""Below it a run leaves few degrees of freedom beside geometry and set-ups."""
-
-_EDGES = ("x0", "x1", "x2")
-"""Parameters of shapes that are values of the variable."""
+FEW_TOUCHES = 60  # below it a run leaves few degrees of freedom beside geometry and set-ups
+_EDGES = ("x0", "x1", "x2")  # parameters of shapes that are values of the variable
 
 _LOOKS = {
     ("bump", "linear"): "It looks like a hose or a cable chain, or a worn place of a guide.",

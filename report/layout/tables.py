@@ -9,7 +9,6 @@ from matstd.twin.text import csv_text
 from matstd.twin.words import in_own_unit
 
 FOLDER, WORKBOOK = "tables", "tables.xlsx"  # where they go, beside the page
-
 _LONGEST = 31  # letters of a sheet's name, by the format
 _WIDEST = 60  # letters of a column before its text is cut off on the screen
 _NUMBER = re.compile(r"[+\-−]?(\d+|\d{1,3}( \d{3})+)(\.\d+)?([eE][+\-]?\d+)?")

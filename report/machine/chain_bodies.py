@@ -21,7 +21,6 @@ from matstd.twin.frames import Array
 from matstd.twin.machine import Chain, Link
 
 TOOL_RADIUS, BALL_RADIUS = 4.0, 6.0  # of the tool that is drawn, mm
-
 _NOSE_RADIUS, _NOSE = 45.0, 170.0  # of the spindle, mm: those of a spindle HSK 63
 _STEEL, _RAIL, _BED = "#aeb6c0", "#6b7685", "#d3d8de"
 _TINT = 0.45  # of the colour of an axis that its bodies keep; the rest is white

@@ -12,7 +12,6 @@ from matstd.twin.frames import Array
 from matstd.twin.machine import Chain
 
 MAX_TRIANGLES = 20_000  # triangles of one body on a page: half a megabyte
-
 FARTHEST = 1e5  # a corner that lies farther from the machine's origin is a slip of units, mm
 
 _MESHES, _STEPS = (".stl", ".obj", ".ply"), (".step", ".stp")

@@ -8,7 +8,6 @@ import numpy as np
 from matstd.twin.frames import Array, unit
 
 FOUNDATION = "f"  # what carries the bodies that do not move; other names are those of links
-
 _ROUND = 40  # sides of a cylinder
 
 

@@ -19,11 +19,8 @@ from matstd.twin.units import UM
 from matstd.twin.words import listed
 
 NEXT = 3  # distinguished effects that are listed below those that are not
-
 SAME = 0.1  # log odds below which a picture shows no difference between two effects
-
 OPEN = 12  # rows up to which a table of rivals is unfolded
-
 _PLANNED = 24  # touches of a plan that the page lists
 
 _EVIDENCE = (

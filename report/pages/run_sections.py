@@ -24,12 +24,8 @@ from matstd.twin.record import Run, Touches
 from matstd.twin.units import UM
 
 PICTURES = "pictures"  # folder beside a page
-
-FIRST, WHOLE = 12, 40
-"""Variables that are shown unfolded, and at most."""
-
+FIRST, WHOLE = 12, 40  # variables that are shown unfolded, and at most
 PATTERN_PICTURES = 3  # patterns that are drawn at most
-
 REGIONS = 2  # regions that are drawn
 
 _REGION = (

@@ -26,9 +26,7 @@ from matstd.twin.record import IntArray, Touches
 from matstd.twin.units import DEG, UM
 
 EXTENT = 1.0  # touched points closer together than this (mm) are a place, not a standard
-
 UNSURE = 3.0  # times the usual uncertainty of a pose's vector from which no arrow is drawn of it
-
 MOST_NAMED = 24  # features whose names are written on the standard
 
 

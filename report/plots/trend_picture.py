@@ -11,7 +11,6 @@ from matstd.report.style import BLUE, INK, RED, Figure, figure, plain, series
 from matstd.twin.units import UM
 
 ACROSS = 3  # quantities side by side
-
 HEIGHT = 2.3  # height of one row of pictures, inch
 
 

@@ -10,13 +10,9 @@ from matstd.twin.frames import Array
 from matstd.twin.record import Touches
 
 MIN_POINTS = 4  # distinct points of a feature from which a surface is drawn between them
-
 MAX_MISFIT = 0.05  # distance of a point from the ball that is drawn through it, mm
-
 MIN_TURN = 0.3  # spread of normals from which a feature can be a ball
-
 MAX_RADIUS = 60.0  # of a ball, mm; larger ones are faces that bend
-
 ROUND = 16  # meridians of a ball
 
 MOST_TRIANGLES = 20_000

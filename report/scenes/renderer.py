@@ -13,7 +13,6 @@ from matstd.twin.errors import DesignError, MissingLibrary
 from matstd.twin.frames import Array
 
 SECONDS = 600.0  # after which the renderer is stopped
-
 _CALL, _IMAGE = "call.pickle", "image.npy"  # files through which the two processes speak
 
 # Without this the renderer looks for an X server and complains when there is none.

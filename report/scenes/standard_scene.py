@@ -20,8 +20,7 @@ _SPHERE = "#f0e442"  # a colour that no patch has
 _PLANE = "#8fae8b"
 _FAR, _STRIDE = 500.0, 2.0  # of a line of sight, mm
 _PITCH = 0.8  # mm, of the drawn grid of a face
-_LETTER, _LINE = 11.0, 24.0
-"""Width of a letter and height of a name with their margins, pixels."""
+_LETTER, _LINE = 11.0, 24.0  # width of a letter and height of a name with their margins, pixels
 
 _NAME_OVER_BALL, _ASIDE = 10.0, 0.7
 """How much worse it is to cover another name than another ball; share of its area that a name may

@@ -18,9 +18,7 @@ from matstd.twin.frames import Array, apply
 from matstd.twin.sampling import grid_points
 
 PIXELS = 900  # height and width of one rendered scene
-
 COLOURS = "viridis"  # even in lightness, and readable without red and green
-
 _VIEW = (0.62, -0.74, 0.46)  # towards the eye: right of and in front of the machine, from above
 _WIDEST = 5.0  # inch, of one scene
 _FREE = 1.03  # of the half height: nothing touches the edge of the picture

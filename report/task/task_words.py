@@ -7,7 +7,6 @@ from matstd.report.numbers import digits, percent, plural, um
 from matstd.twin.units import UM
 
 FEW_VISITS = 10  # cycles that ISO 15530-3 asks for at least
-
 FEW_DOF = 5.0  # degrees of freedom below which a quarter of U or more is due to its own uncertainty
 
 

@@ -44,7 +44,6 @@ _PARTS = {
 """Carriers of an error that are no component of an axis."""
 
 MOST_ALIKE = 4  # carriers that are named beside the first
-
 ALL_NUMBERS = 7  # numbers of an effect that are written out; of more, only those that sum them up
 
 

@@ -19,7 +19,6 @@ from matstd.twin.units import DEG
 from matstd.twin.words import listed
 
 PERIODS_NAMED = 4  # indistinguishable periods that are named, the longest ones
-
 WITHIN = 0.1  # excess over the stated noise that is not reported: half a per cent of its size
 
 HALF = 0.5

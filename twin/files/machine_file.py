@@ -29,8 +29,7 @@ NEAREST_PIVOT, FARTHEST_PIVOT = 0.05, 5.0
 """A coordinate of a pivot between these, mm, may be one in metres: 0.42 for 420 mm. Measured
 centres of rotation differ from zero by hundredths of a millimetre."""
 LONGEST_IN_METRES = 5e3  # in mm: no pivot lies farther
-MOST_BELOW = 0.5
-"""Share of the travel of the gauge point that may lie below the table's face."""
+MOST_BELOW = 0.5  # share of the travel of the gauge point that may lie below the table's face
 LEAST_AWAY = 50.0  # of a table from the line about which it turns, before that is strange, mm
 NEARER = 4.0
 """Times that a pivot in metres is nearer to the table, or farther from the spindle, once read so;

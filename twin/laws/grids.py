@@ -14,7 +14,6 @@ from matstd.twin.laws.driver import Driver
 from matstd.twin.laws.shape import SHAPES, Shape
 
 BUMP_PLACES = 24  # places over the range of a variable at which a bump, a kink or a step is tried
-
 EDGES = 18  # edges of a window or a ramp: 153 pairs of them
 
 EVERY_GAP = 40

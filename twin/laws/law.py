@@ -36,8 +36,7 @@ FREE_LENGTH, FREE_ANGLE = 1000.0 * UM, 10000.0 * URAD
 """Prior standard deviation of an amplitude: what is learnt is not drawn towards zero. Of a curve
 its own `size` is the prior."""
 
-BEYOND_LENGTH = 0.3
-"""Share of its domain within which a law has lost its force beyond it."""
+BEYOND_LENGTH = 0.3  # share of its domain within which a law has lost its force beyond it
 
 AT_REST = 0.75
 """Share of its motion that a law of time makes in the first half of a run if it comes to rest in

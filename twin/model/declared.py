@@ -64,26 +64,21 @@ def scanned(
 
 @dataclass(frozen=True)
 class Declared:
-    """An effect whose name, title, parameters and grids follow from its fields.
+    """An effect whose name, title, parameters and grids follow from its fields."""
 
-    Attributes:
-        kind: First word of the name.
-        called: Title, with fields in braces: `sag of {symbol.link} {symbol.motion}`; empty where
-            the title of the kind is enough.
-        carrier: What carries it where that is no axis of its fields: "standard", "probe".
-        acts_on: Component error whose entry the amounts add to, `EZZ`, or `bias`; empty for that of
-            the field `symbol`, or the motion of the field `axis`.
-        amplitudes: Names of its parameters, where all have the unit of the entry and one size.
-        per: What follows that unit: `/K`.
-        usual: Expected standard deviations of an amplitude as a length and as an angle, mm and rad.
-    """
-
-    kind: ClassVar[str]
+    kind: ClassVar[str]  # first word of the name
+    # title, with fields in braces: `sag of {symbol.link} {symbol.motion}`; empty where the title of
+    # the kind is enough
     called: ClassVar[str] = ""
+    # what carries it where that is no axis of its fields: "standard", "probe"
     carrier: ClassVar[str] = ""
+    # component error whose entry the amounts add to, `EZZ`, or `bias`; empty for that of the field
+    # `symbol`, or the motion of the field `axis`
     acts_on: ClassVar[str] = ""
+    # names of its parameters, where all have the unit of the entry and one size
     amplitudes: ClassVar[Sequence[str]] = ("amplitude",)
-    per: ClassVar[str] = ""
+    per: ClassVar[str] = ""  # what follows that unit: `/K`
+    # expected standard deviations of an amplitude as a length and as an angle, mm and rad
     usual: ClassVar[tuple[float, float]] = (10 * UM, 30 * URAD)
 
     @cached_property

@@ -36,7 +36,6 @@ MACHINES = (
 """Kinds of machines with a template of their own."""
 
 IN_METRES = 10.0  # a table smaller than this, mm, is one in metres
-
 NEEDS_MACHINE = ("project", "run")  # kinds that name a machine file
 
 
