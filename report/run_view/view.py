@@ -33,7 +33,7 @@ class Framed:
 
     def __init__(self, title: str, lead: str, view: LiveView) -> None:
         """Make the page of a view; arguments as of `Page`."""
-        page = Page(title=title, heading=title, lead=lead, key=(), sections=(), live=view)
+        page = Page(heading=title, lead=lead, key=(), sections=(), live=view)
         with TemporaryDirectory() as folder:
             path = Path(folder) / "view.html"
             write_page(path, page)
