@@ -12,6 +12,7 @@ from matstd.twin.model.effect import (
     Effect,
     Inner,
     Parameter,
+    Saved,
     Term,
     Title,
     Tunable,
@@ -26,7 +27,7 @@ from matstd.twin.model.kind import Kind
 from matstd.twin.model.model import Model, columns
 
 __all__ = [
-    "Amounts", "Declared", "Effect", "Inner", "Kind", "Model", "Parameter", "Term",
+    "Amounts", "Declared", "Effect", "Inner", "Kind", "Model", "Parameter", "Saved", "Term",
     "Title", "Traits", "Tunable", "Wave", "Where", "columns", "contribution", "inner_values",
     "is_saved", "is_tunable", "moving_axes", "original_of", "own_title", "refusal", "scanned",
     "sensors", "traits",
