@@ -179,6 +179,15 @@ def test_bad_errors(machine: Path, tmp_path: Path, old: str, new: str, expected:
         read_errors(path, read_machine(machine))
 
 
+def test_errors_in_mm_are_refused_where_the_largest_says_so(machine: Path, tmp_path: Path) -> None:
+    path, small = tmp_path / "errors.toml", ERRORS.replace("12.0", "0.012")
+    path.write_text(small)  # EXX small beside 10 µm of EXC: a good axis
+    read_errors(path, read_machine(machine))
+    path.write_text(small.replace("10.0", "0.01").replace("1.0", "0.001"))
+    with pytest.raises(BadFile, match=r"EXX\.amplitude: found 0\.012, .*is it in mm, 12 µm\?"):
+        read_errors(path, read_machine(machine))
+
+
 def test_poses(machine: Path, tmp_path: Path) -> None:
     path = tmp_path / "poses.csv"
     path.write_text("X_mm,Y_mm,Z_mm,B_deg,C_deg,tool_length_mm\n100,50,-200,-90,0,160\n")

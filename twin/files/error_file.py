@@ -13,10 +13,12 @@ from matstd.twin.files.toml import read_toml
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain, Family, Symbol
 from matstd.twin.model import Effect
-from matstd.twin.units import DEG, UM, URAD
+from matstd.twin.units import DEG, UM, URAD, in_another_unit
 
 LARGEST_ERROR = 1e6
 """An amplitude beyond this (µm or µrad: a metre, a radian) is a slip of units, not an error."""
+USUAL_LARGEST = 30.0
+"""Usual size of the largest error of lengths, µm: 0.0075 to 0.12 are taken for mm, and refused."""
 
 
 class ErrorTable(Table):
@@ -40,13 +42,15 @@ def read_errors(path: str | Path, chain: Chain) -> list[tuple[Effect, Array]]:
     """Errors of a machine as effects with their amplitudes (base units).
 
     Raises:
-        BadFile: Unknown name or key, a shape missing or too many, a number that is none.
+        BadFile: Unknown name or key, a shape missing or too many, a number that is none, or
+            amplitudes in mm.
     """
     import numpy as np
 
     twice = "[[{name}]] in every place: the shapes of one error add up"
     data = read_toml(path, "errors/1", twice)
     out: list[tuple[Effect, Array]] = []
+    largest = (0.0, "")
     for name, tables in data.items():
         if name == "format":
             continue
@@ -60,6 +64,12 @@ def read_errors(path: str | Path, chain: Chain) -> list[tuple[Effect, Array]]:
             entry = checked(ErrorTable, table, path, key)
             unit = URAD if symbol.is_angular else UM
             out.append((_effect(symbol, entry, path, key), np.array([entry.amplitude * unit])))
+            if not symbol.is_angular:
+                largest = max(largest, (abs(entry.amplitude), f"{key}.amplitude"))
+    size, key = largest
+    if (slip := in_another_unit([size], "µm", USUAL_LARGEST)) and slip[0] == "mm":
+        meant = f"the largest error of a length in µm; is it in mm, {slip[1] * size:g} µm?"
+        raise BadFile(path, key, f"{size:g}", meant)
     return out
 
 
