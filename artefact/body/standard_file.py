@@ -22,7 +22,10 @@ from matstd.twin.units import UM
 FORMAT = "standard/1"
 
 Positive = Annotated[float, Field(gt=0.0)]
-Name = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_]*$", max_length=32)]
+_LETTERS = "letters, digits and `_`, a letter first, 32 at most"
+Name = Annotated[
+    str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_]*$", max_length=32, description=_LETTERS)
+]
 Pair = Annotated[list[Positive], Field(min_length=2, max_length=2)]
 Triple = Annotated[list[float], Field(min_length=3, max_length=3)]
 Degree = Annotated[int, Field(ge=2, le=9)]

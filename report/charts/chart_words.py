@@ -125,7 +125,7 @@ def meaning(found: History) -> str:
         f"The machine is no longer in the state of the first run ({risk}). A step has a cause "
         "at its date: a collision, a repair, a new table of compensation. A drift has one that "
         "goes on: wear, foundation, season. Models and compensations from before a change do not "
-        "hold behind it."
+        "hold after it."
     )
 
 

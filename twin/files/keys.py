@@ -106,7 +106,7 @@ def keys_of(model: type[BaseModel]) -> dict[str, Key]:
         key = field.alias or name
         holds = _holds(field.annotation, field.metadata, unit_of(key)).one
         bounds = _bounds(field.metadata, unit_of(key))
-        out[key] = Key(about.get(name, ""), holds, bounds, _example(field))
+        out[key] = Key(about.get(name, field.description or ""), holds, bounds, _example(field))
     return out
 
 
