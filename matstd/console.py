@@ -9,8 +9,6 @@ from matstd.twin.words import in_own_unit
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from matstd.twin.machine import Chain
-
 DEFAULT_WIDTH = 120  # letters of a line where neither a terminal nor COLUMNS says how wide it is
 
 
@@ -26,11 +24,6 @@ def console() -> "Console":
 def say(text: str, style: str | None = None) -> None:
     """One line as it is: a terminal breaks it where it likes, a file keeps it whole."""
     console().print(in_own_unit(text), markup=False, style=style, soft_wrap=True)
-
-
-def say_assumed(chain: "Chain") -> None:
-    """What the machine file leaves open, and what is taken instead."""
-    say_each(chain.remarks)
 
 
 def say_each(lines: Iterable[object]) -> None:

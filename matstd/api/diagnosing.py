@@ -35,7 +35,7 @@ from matstd.diagnosis.files import (
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.laws import learn_remainder
 from matstd.diagnosis.next_visit import VisitPlan
-from matstd.report.pages import Printer, write_compare_page, write_diagnosis_page, write_pdf
+from matstd.report.pages import write_compare_page, write_diagnosis_page
 from matstd.report.run_view import Framed, comparison_view, diagnosis_view
 from matstd.report.words import (
     comparison_sentence,
@@ -145,13 +145,11 @@ class Diagnosis(Saveable, answer.Diagnosis):
             view = diagnosis_view(self, self.title, self.body)
             return Framed(f"Diagnosis of {self.title}", verdict_sentence(self), view)
 
-    def write_page(self, folder: Path, printed_by: Printer | None = None) -> None:
+    def write_page(self, folder: Path) -> None:
         """Write the page into an existing folder."""
         with deviations_in(self.run.touches.deviation_unit):
             rng = np.random.default_rng(0)
             write_diagnosis_page(self, folder, self.title, rng, self.auto, self.body, self.visit)
-            if printed_by is not None:
-                write_pdf(folder / "report.html", folder / "report.pdf", printed_by)
 
 
 def diagnose(
@@ -331,14 +329,12 @@ class Comparison(Saveable, answer.Comparison):
             view = comparison_view(self, self.title, self.body)
             return Framed(f"{self.title} against the model", comparison_sentence(self), view)
 
-    def write_page(self, folder: Path, printed_by: Printer | None = None) -> None:
+    def write_page(self, folder: Path) -> None:
         """Write the page into an existing folder."""
         reported = self.saved.reported if self.saved else None
         with deviations_in(self.run.touches.deviation_unit):
             rng = np.random.default_rng(0)
             write_compare_page(self, folder, self.title, rng, reported, self.body)
-            if printed_by is not None:
-                write_pdf(folder / "report.html", folder / "report.pdf", printed_by)
 
 
 def compare(

@@ -17,7 +17,6 @@ from matstd.diagnosis.laws import SecondRun, learn_laws, second_run
 from matstd.diagnosis.next_visit import VisitPlan
 from matstd.diagnosis.search import DiagnosisTask, refined_named
 from matstd.report.laws import effect_text, law_sentence, no_law_sentence, write_law_page
-from matstd.report.pages import Printer, write_pdf
 from matstd.report.run_view import Framed, learnt_view
 from matstd.twin.files import write_whole
 from matstd.twin.frames import Array
@@ -88,13 +87,11 @@ class LearntLaws(Saveable, laws.Learning):
         with deviations_in(self.after.run.touches.deviation_unit):
             return Framed(self.title, lead, learnt_view(self, self.title, self.body))
 
-    def write_page(self, folder: Path, printed_by: Printer | None = None) -> None:
+    def write_page(self, folder: Path) -> None:
         """Write the page into an existing folder."""
         with deviations_in(self.after.run.touches.deviation_unit):
             live = learnt_view(self, self.title, self.body)
             write_law_page(self, folder, self.title, self.visit, self.second, live)
-            if printed_by is not None:
-                write_pdf(folder / "report.html", folder / "report.pdf", printed_by)
 
 
 def learn(

@@ -12,9 +12,10 @@ from matstd.diagnosis.geometry import found_arm
 from matstd.diagnosis.laws import Learning, SecondRun
 from matstd.diagnosis.next_visit import VisitPlan, plan_visit
 from matstd.importers import machine_text
+from matstd.options import print_report
 from matstd.report.laws import effect_text
 from matstd.report.numbers import microns
-from matstd.report.pages import Printer, printer
+from matstd.report.pages import printer
 from matstd.twin.files import results_folder, write_whole
 from matstd.twin.files.whole import write_json
 
@@ -44,15 +45,9 @@ class Saveable(ABC):
         printed_by = printer() if pdf else None
         with results_folder(folder, force, self.sometimes) as place:
             self.write(place)
-            self.write_page(place, printed_by)
+            self.write_page(place)
+            print_report(place, printed_by)
         return Path(folder)
-
-    def page(self, folder: str | Path, pdf: bool = False, force: bool = False) -> Path:
-        """Write report.html with its pictures and tables into a folder; arguments as of `save`."""
-        printed_by = printer() if pdf else None
-        with results_folder(folder, force, self.sometimes) as place:
-            self.write_page(place, printed_by)
-        return Path(folder) / "report.html"
 
     @abstractmethod
     def write(self, folder: Path) -> str:
@@ -63,7 +58,7 @@ class Saveable(ABC):
         """
 
     @abstractmethod
-    def write_page(self, folder: Path, printed_by: Printer | None = None) -> None:
+    def write_page(self, folder: Path) -> None:
         """Write the page into an existing folder."""
 
 

@@ -21,7 +21,6 @@ from matstd.diagnosis.charts import (
 )
 from matstd.diagnosis.files import read_model
 from matstd.report.charts import write_history_page
-from matstd.report.pages import Printer, write_pdf
 from matstd.twin.compute import Progress, silent
 from matstd.twin.display import Displayed
 from matstd.twin.errors import BadArgument, NotEnoughData
@@ -73,12 +72,10 @@ class Trend(Saveable, Displayed, History):
         write_whole(folder / "trend.csv", history_csv(self))
         return ""
 
-    def write_page(self, folder: Path, printed_by: Printer | None = None) -> None:
+    def write_page(self, folder: Path) -> None:
         """Write the page into an existing folder."""
         follows = f"matstd diagnose {' '.join(self.follows)}" if self.follows else ""
         write_history_page(self, folder, self.title, follows)
-        if printed_by is not None:
-            write_pdf(folder / "report.html", folder / "report.pdf", printed_by)
 
 
 def trend(

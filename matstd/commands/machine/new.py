@@ -8,7 +8,7 @@ from os.path import relpath
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from matstd.console import say, say_assumed, say_each
+from matstd.console import say, say_each
 from matstd.twin.errors import BadArgument
 
 if TYPE_CHECKING:
@@ -145,7 +145,7 @@ def _proposed(args: argparse.Namespace) -> int:
         f"{brief.options.patches} faces, probe {brief.probe.length:g} mm long; seat, reach and "
         "room are checked"
     )
-    say_assumed(brief.chain)
+    say_each(brief.chain.remarks)
     say_each(_gains(found))
     return 0
 

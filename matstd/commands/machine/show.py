@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 
 from matstd.commands.compensation.options import add_driven, add_program
-from matstd.console import say, say_assumed
+from matstd.console import say, say_each
 from matstd.options import add_effects, add_options, add_output
 from matstd.twin.errors import BadArgument
 
@@ -90,6 +90,6 @@ def run(args: argparse.Namespace) -> int:
         page.save(args.output, args.force)
     for line in shown_lines(page.shown):
         say(line)
-    say_assumed(page.shown.chain)
+    say_each(page.shown.chain.remarks)
     say(f"{args.output}: open it in a browser; it loads nothing")
     return 0

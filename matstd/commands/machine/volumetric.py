@@ -2,7 +2,7 @@
 
 import argparse
 
-from matstd.console import say_assumed
+from matstd.console import say_each
 from matstd.options import add_output
 from matstd.twin.units import UM
 
@@ -29,5 +29,5 @@ def run(args: argparse.Namespace) -> int:
     size = found.size / UM
     count = f"{len(size)} poses" if len(size) > 1 else "1 pose"
     print(f"{args.output}: {count}, mean {size.mean():.3f} µm, worst {size.max():.3f} µm")
-    say_assumed(chain)
+    say_each(chain.remarks)
     return 0

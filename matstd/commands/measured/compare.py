@@ -5,11 +5,13 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from matstd.console import say
-from matstd.options import add_measured, asked_printer, pitches, starting_model
+from matstd.commands.measured.results import made_in_folder, say_files
+from matstd.console import say, say_each
+from matstd.options import add_measured, pitches, starting_model
 
 if TYPE_CHECKING:
     from matstd.api.diagnosing import Comparison
+    from matstd.twin.compute import Progress
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -24,21 +26,19 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Compare; the folder appears whole or not at all."""
     from matstd.api.diagnosing import Comparison, compare
-    from matstd.effect_kinds import register_effects
-    from matstd.progress import stages, turns
-    from matstd.twin.files import results_folder
+    from matstd.progress import turns
     from matstd.twin.words import deviations_in
 
-    register_effects(*args.effects)
-    model, pitch, printed_by = starting_model(args), pitches(args), asked_printer(args)
-    with results_folder(args.output, args.force, Comparison.sometimes) as folder, stages() as show:
-        found = compare(
-            args.run_file, model, pitch=pitch, standard=args.standard, progress=turns(show)
+    def make(show: Progress) -> Comparison:
+        return compare(
+            args.run_file,
+            starting_model(args),
+            pitch=pitches(args),
+            standard=args.standard,
+            progress=turns(show),
         )
-        arm = found.write(folder)
-        if not args.no_report:
-            show("report", 0, 1)
-            found.write_page(folder, printed_by)
+
+    found, arm = made_in_folder(args, Comparison, make)
     with deviations_in(found.run.touches.deviation_unit):
         _report(args, found, arm)
     return 0
@@ -65,11 +65,8 @@ def _report(args: argparse.Namespace, found: Comparison, arm: str) -> None:
     say(f"- repeatability: {repeatability_words(found.repeatability, found.scatter)}")
     if found.promise is not None:
         say(f"- error to expect: {promise_words(found.promise)}")
-    for region in found.where:
-        say(f"- {region_sentence(region)}")
+    say_each(map(region_sentence, found.where))
     for line, is_first in console_lines(found.run.touches, found.geometry, found.faults):
         say(f"- {line}", style="bold" if is_first else None)
-    for line in filter(None, [arm, *map(remark_sentence, found.remarks)]):
-        say(f"- {line}")
-    first = "" if args.no_report else "report.html, "
-    say(f"{args.output}: look at {first}comparison.json, residuals.csv")
+    say_each(filter(None, [arm, *map(remark_sentence, found.remarks)]))
+    say_files(args, "comparison.json", "residuals.csv")

@@ -7,13 +7,13 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from matstd.console import console, say
+from matstd.commands.measured.results import made_in_folder, say_files
+from matstd.console import console, say, say_each
 from matstd.next_steps import called
 from matstd.options import (
     add_measured,
     add_options,
     add_several,
-    asked_printer,
     pitches,
     starting_model,
 )
@@ -22,6 +22,7 @@ from matstd.twin.units import UM
 if TYPE_CHECKING:
     from matstd.api.diagnosing import Diagnosis
     from matstd.diagnosis.answer import Step
+    from matstd.twin.compute import Progress
 
 CELL_WIDTH = 40
 """Width in characters of a cell of words, so that the table of figures fits beside them."""
@@ -63,31 +64,25 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Diagnose; the folder appears whole or not at all."""
     from matstd.api.diagnosing import Diagnosis, diagnose
-    from matstd.effect_kinds import register_effects
-    from matstd.progress import stages, turns
-    from matstd.twin.files import results_folder
+    from matstd.progress import turns
     from matstd.twin.words import deviations_in
 
-    register_effects(*args.effects)
-    model, pitch, printed_by = starting_model(args), pitches(args), asked_printer(args)
-    with results_folder(args.output, args.force, Diagnosis.sometimes) as folder, stages() as show:
-        found = diagnose(
+    def make(show: Progress) -> Diagnosis:
+        return diagnose(
             args.run_files,
-            model,
+            starting_model(args),
             add=args.add,
             auto=args.auto,
             only=args.only,
             without=args.without,
             hold_out=args.hold_out,
-            pitch=pitch,
+            pitch=pitches(args),
             learn=not args.no_learn,
             standard=args.standard,
             progress=turns(show),
         )
-        arm = found.write(folder)
-        if not args.no_report:
-            show("report", 0, 1)
-            found.write_page(folder, printed_by)
+
+    found, arm = made_in_folder(args, Diagnosis, make)
     with deviations_in(found.run.touches.deviation_unit):
         _report(args, found, arm)
     args.next = _next(args, found)
@@ -200,8 +195,7 @@ def _report(args: argparse.Namespace, result: Diagnosis, arm: str) -> None:
     say(f"{result.verdict.value}: {verdict_sentence(result)}", style="bold")
     notes = law_notes(result.laws) if result.laws else []
     notes += visit_sentences(result.visit) if result.visit else []
-    for line in (*(f"{name}: {words}" for name, words in part_lines(result)), *notes):
-        say(f"- {line}")
+    say_each((*(f"{name}: {words}" for name, words in part_lines(result)), *notes))
     right = ("p", "fitted µm", "held out µm", "chi²/dof")
     numbers = [Column(in_own_unit(word), justify="right", no_wrap=True) for word in right]
     words = [Column(word, overflow="fold", max_width=CELL_WIDTH) for word in ("effect", "size")]
@@ -216,23 +210,17 @@ def _report(args: argparse.Namespace, result: Diagnosis, arm: str) -> None:
     known = result.run.touches, result.geometry, result.faults, result.trend
     for line, is_first in console_lines(*known):
         say(f"- {line}", style="bold" if is_first else None)
-    said = [
-        arm,
-        *(remark_sentence(r) for r in result.remarks),
-        scanned_sentence(result.detectable),
-    ]
-    for line in filter(None, said):
-        say(f"- {line}")
+    said = arm, *map(remark_sentence, result.remarks), scanned_sentence(result.detectable)
+    say_each(filter(None, said))
     is_short = result.learnt is result.steps[result.named].fit
     if is_short and any(not s.is_named for s in result.steps[1:]):
         more = "the law" if result.withdrawn else "what was found, --add NAME one of them"
         say(f"- model.toml holds only effects you named; --auto adds {more}")
     for i, plan in enumerate(result.plans, start=1):
         say(f"- next_measurement_{i}.csv would distinguish {plan_words(plan)}")
-    first = "" if args.no_report else "report.html, "
-    law = "effect.py (--effects), law.json, " if result.laws and result.laws.laws else ""
-    law += "next_visit.csv, " if result.visit and result.visit.touches else ""
-    say(f"{args.output}: look at {first}{law}diagnosis.json, model.toml")
+    law = ("effect.py (--effects)", "law.json") if result.laws and result.laws.laws else ()
+    visit = "next_visit.csv" if result.visit and result.visit.touches else ""
+    say_files(args, *law, visit, "diagnosis.json", "model.toml")
 
 
 def _row(step: Step, is_withdrawn: bool) -> tuple[str, ...]:

@@ -5,11 +5,13 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from matstd.console import say
-from matstd.options import add_measured, add_several, asked_printer, pitches, starting_model
+from matstd.commands.measured.results import made_in_folder, say_files
+from matstd.console import say, say_each
+from matstd.options import add_measured, add_several, pitches, starting_model
 
 if TYPE_CHECKING:
     from matstd.api.learning import LearntLaws
+    from matstd.twin.compute import Progress
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -32,27 +34,20 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Learn; the folder appears whole or not at all."""
     from matstd.api.learning import LearntLaws, learn
-    from matstd.effect_kinds import register_effects
-    from matstd.progress import stages
-    from matstd.twin.files import results_folder
     from matstd.twin.words import deviations_in
 
-    register_effects(*args.effects)
-    model, pitch, printed_by = starting_model(args), pitches(args), asked_printer(args)
-    with results_folder(args.output, args.force, LearntLaws.sometimes) as folder, stages() as show:
+    def make(show: Progress) -> LearntLaws:
         show("law", 0, 1)
-        found = learn(
+        return learn(
             args.run_files,
-            model,
+            starting_model(args),
             add=args.add,
             second=args.second_run,
-            pitch=pitch,
+            pitch=pitches(args),
             standard=args.standard,
         )
-        found.write(folder)
-        if not args.no_report:
-            show("report", 0, 1)
-            found.write_page(folder, printed_by)
+
+    found, _ = made_in_folder(args, LearntLaws, make)
     with deviations_in(found.after.run.touches.deviation_unit):
         _report(args, found)
     args.next = _next(args, found)
@@ -97,17 +92,13 @@ def _report(args: argparse.Namespace, found: LearntLaws) -> None:
         say(sentence(law_sentence(found, one)), style="bold")
         if second := rival_sentence(one):
             say(f"- {second}")
-    for line in law_notes(found):
-        say(f"- {line}")
+    say_each(law_notes(found))
     if found.laws:
         say(f"- {held_out_sentence(found)}")
-    for line in visit_sentences(found.visit):
-        say(f"- {line}")
+    say_each(visit_sentences(found.visit))
     if found.second is not None:
         say(f"- {second_run_sentence(found.second)}")
-    for line in found.after.run.remarks:
-        say(f"- {line}")
-    first = "" if args.no_report else "report.html, "
-    names = "effect.py (--effects), " if found.laws else ""
-    names += "" if found.visit.touches is None else "next_visit.csv, "
-    say(f"{args.output}: look at {first}{names}law.json, model.toml")
+    say_each(found.after.run.remarks)
+    effect = "effect.py (--effects)" if found.laws else ""
+    visit = "" if found.visit.touches is None else "next_visit.csv"
+    say_files(args, effect, visit, "law.json", "model.toml")

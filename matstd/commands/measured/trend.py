@@ -5,9 +5,10 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from matstd.console import say
+from matstd.commands.measured.results import made_in_folder, say_files
+from matstd.console import say, say_each
 from matstd.next_steps import called
-from matstd.options import add_results, add_several, asked_printer
+from matstd.options import add_results, add_several
 
 if TYPE_CHECKING:
     from matstd.api.trending import Trend
@@ -30,19 +31,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Chart; the folder appears whole or not at all."""
     from matstd.api.trending import Trend, trend
-    from matstd.effect_kinds import register_effects
-    from matstd.progress import stages
-    from matstd.twin.files import results_folder
 
-    register_effects(*args.effects)
-    printed_by = asked_printer(args)
     given = args.runs[0] if len(args.runs) == 1 else args.runs
-    with results_folder(args.output, args.force, Trend.sometimes) as folder, stages() as show:
-        found = trend(given, add=args.add, progress=show)
-        found.write(folder)
-        if not args.no_report:
-            show("report", 0, 1)
-            found.write_page(folder, printed_by)
+    found, _ = made_in_folder(args, Trend, lambda show: trend(given, add=args.add, progress=show))
     _report(args, found)
     args.next = _next(args, found)
     return 0
@@ -65,9 +56,7 @@ def _report(args: argparse.Namespace, found: Trend) -> None:
     from matstd.report.charts import history_lines, history_sentence
 
     say(history_sentence(found), style="bold")
-    for line in history_lines(found):
-        say(f"- {line}")
+    say_each(history_lines(found))
     if found.left_out:
         say(f"- no run files, left out: {', '.join(found.left_out)}")
-    first = "" if args.no_report else "report.html, "
-    say(f"{args.output}: look at {first}trend.json, trend.csv")
+    say_files(args, "trend.json", "trend.csv")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from matstd.console import say, say_assumed, say_each
+from matstd.console import say, say_each
 from matstd.options import add_body, add_options, add_output
 from matstd.twin.errors import BadArgument
 from matstd.twin.units import DEG, UM
@@ -147,6 +147,6 @@ def run(args: argparse.Namespace) -> int:
         f"{args.output}: {len(run)} touches at {len(np.unique(run.touches.pose))} table "
         f"poses, deviations {left:.3f} µm rms after the set-up was fitted"
     )
-    say_assumed(found.chain)
+    say_each(found.chain.remarks)
     say_each([*found.probe_remarks, *found.remarks])
     return 0

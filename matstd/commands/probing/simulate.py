@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from matstd.console import say, say_assumed, say_each
+from matstd.console import say, say_each
 from matstd.options import add_body, add_effects, add_options, add_output, add_several
 from matstd.twin.errors import DesignError
 from matstd.twin.units import UM
@@ -90,7 +90,7 @@ def run(args: argparse.Namespace) -> int:
         f"deviations {left:.3f} µm rms after the set-up was fitted"
     )
     say_each(f"planted: {text}" for text in args.add)
-    say_assumed(run.touches.chain)
+    say_each(run.touches.chain.remarks)
     say_each(found.remarks)
     return 0
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from matstd.console import say, say_assumed, say_each
+from matstd.console import say, say_each
 from matstd.options import SHEET, add_output, add_pdf
 from matstd.progress import Plan
 from matstd.workers import add_scheduler
@@ -72,7 +72,7 @@ def run(args: argparse.Namespace) -> int:
 
     project = Project.read(args.project, args.control)
     brief = project.brief
-    say_assumed(brief.chain)
+    say_each(brief.chain.remarks)
     say_each(brief.remarks)
     say_each(standing_remarks(brief.chain, brief.setup.T_table_artefact))
     with stages(PLAN if brief.chain.rotary_axes else LINEAR_PLAN) as progress:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from matstd.console import say_assumed, say_each
+from matstd.console import say_each
 from matstd.options import add_options, add_pdf
 from matstd.twin.errors import BadFile, DesignError
 from matstd.workers import add_scheduler
@@ -73,7 +73,7 @@ def _table(args: argparse.Namespace) -> int:
         found = sensitivities(chain, args.poses, show)
         found.save(args.output)
     print(f"{args.output}: {len(found.S)} poses, {len(found.names)} parameters")
-    say_assumed(chain)
+    say_each(chain.remarks)
     return 0
 
 
@@ -84,7 +84,7 @@ def _study(args: argparse.Namespace) -> int:
     from matstd.report.words import study_words
 
     project = Project.read(args.source, montecarlo=_settings(args))
-    say_assumed(project.brief.chain)
+    say_each(project.brief.chain.remarks)
     say_each(project.brief.remarks)
     with stages() as progress:
         made = project.sensitivity(
