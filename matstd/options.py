@@ -14,7 +14,9 @@ from matstd.twin.errors import DesignError
 if TYPE_CHECKING:
     from matstd.report.pages import Printer
 
-SETUP, GEOMETRY = "setup", "geometry"  # words of `--start`
+SETUP, GEOMETRY = "setup", "geometry"
+"""Words for starting models: where the standard stands and no more, or the ordinary model."""
+
 SHEET = "setup"  # folder of the set-up sheet, and of the programs that are run before the others
 
 SHEET_FILES = (

@@ -10,6 +10,7 @@ from matstd.diagnosis.faults import faults_of_refused
 from matstd.diagnosis.files import SavedModel, check_machine, read_model
 from matstd.diagnosis.fit import MIN_TOUCHES
 from matstd.effect_kinds import register_effects
+from matstd.options import GEOMETRY, SETUP
 from matstd.report.geometry import copy_lines, fault_sentences
 from matstd.report.words import remark_sentence
 from matstd.twin import files
@@ -17,9 +18,6 @@ from matstd.twin.errors import BadArgument, BadFile, DesignError, NotEnoughData
 from matstd.twin.library import kinds, ordinary_model, try_kind, users_files
 from matstd.twin.model import Model
 from matstd.twin.record import Run, joined
-
-SETUP, GEOMETRY = "setup", "geometry"
-"""Words for starting models: where the standard stands and no more, or the ordinary model."""
 
 Runs = Run | str | Path | Sequence[Run | str | Path]
 """A run, the path of its file, or several of them."""
