@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from os.path import relpath
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +11,7 @@ from matstd.api.standards import standard_of
 from matstd.artefact.body import Standard
 from matstd.diagnosis.remarks import body_sizes
 from matstd.effect_kinds import register_effects
+from matstd.options import seen_from
 from matstd.probe_paths.campaign import (
     Campaign,
     VirtualMachine,
@@ -292,8 +292,7 @@ def stated_body(standard: Standard, temperature: float | None, u: float | None) 
 
 def save_run(path: str | Path, run: Run, machine: str | Path) -> None:
     """Write a run file that names its machine file as it is seen from there."""
-    folder = Path(path).parent.resolve()
-    write_run(path, run, Path(relpath(machine, folder)).as_posix())
+    write_run(path, run, seen_from(Path(path).parent, machine))
 
 
 def save_logs(folder: str | Path, logs: Mapping[str, str], force: bool = False) -> list[Path]:

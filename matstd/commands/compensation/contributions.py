@@ -6,7 +6,7 @@ import argparse
 
 from matstd.commands.compensation.options import add_model, add_program, add_state
 from matstd.console import say
-from matstd.options import add_options
+from matstd.options import add_options, add_output
 from matstd.twin.errors import DesignError
 
 
@@ -23,8 +23,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         },
     )
     add_state(parser)
-    parser.add_argument("-o", "--output", metavar="OUT", required=True, help="output folder")
-    parser.add_argument("--force", action="store_true", help="replace results of an earlier run")
+    add_output(parser)
 
 
 def run(args: argparse.Namespace) -> int:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import argparse
 from importlib.resources import files
-from os.path import relpath
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from matstd.console import say, say_each
+from matstd.options import seen_from
 from matstd.twin.errors import BadArgument
 
 if TYPE_CHECKING:
@@ -132,8 +132,8 @@ def _proposed(args: argparse.Namespace) -> int:
 
     machine, output = Path(args.machine), args.output
     folder = Path(output).parent if output is not None else Path()
-    named = Path(relpath(machine, folder)).as_posix()
     with stages() as show:
+        named = seen_from(folder, machine)
         found = propose(machine, named, tuple(args.table_mm) if args.table_mm else None, show)
     if output is None:
         print(found.text, end="")
