@@ -137,7 +137,8 @@ def _meet_patch(
     if not len(near):
         return
     p, d = start[near], d[near]
-    hit = patch.contact(p, d, radius)
+    first = patch.contact_start(p, d, radius)
+    hit = patch.contact(p, d, radius, first)
     face = patch.contains(hit.uv)
     race.offer(hit.travel[face], patch.name, Meeting.SURFACE, near[face], hit.uv[face])
     edge = _edge_entry(patch, p, d, radius, np.minimum(latest[near], race.travel[near]))
@@ -147,11 +148,9 @@ def _meet_patch(
     race.offer(_corner_entry(patch, local_p, local_d, radius), patch.name, Meeting.SIDE, near)
     inside = column.distance(p) < 0.0
     race.offer(np.zeros(inside.sum()) - 1.0, patch.name, Meeting.INSIDE, near[inside])
-    open_ = np.flatnonzero(np.isnan(hit.travel))
-    p, d, near = p[open_], d[open_], near[open_]
-    expected = patch.contact_start(p, d, radius).travel
-    lost = np.isfinite(expected) & _aims_at_face(patch, p, d, expected)
-    race.offer(expected[lost], patch.name, Meeting.UNRESOLVED, near[lost])
+    open_ = np.flatnonzero(np.isnan(hit.travel) & np.isfinite(first.travel))
+    lost = open_[_aims_at_face(patch, p[open_], d[open_], first.travel[open_])]
+    race.offer(first.travel[lost], patch.name, Meeting.UNRESOLVED, near[lost])
 
 
 def _aims_at_face(patch: FreeformPatch, p: Array, d: Array, travel: Array) -> Mask:

@@ -155,7 +155,9 @@ class FreeformPatch:
         local = apply(self.T_patch_artefact, rows(points))
         return foot_parameters(self.jet, self.domain, local, self._nearest_node(local))
 
-    def contact(self, start: Array, direction: Array, radius: float) -> Hit:
+    def contact(
+        self, start: Array, direction: Array, radius: float, first: Hit | None = None
+    ) -> Hit:
         """First contact of a moving ball: ``S(u, v) + radius n(u, v) = start + t d``, by Newton.
 
         The search starts at the node of a grid over the trimmed face that the ball meets first, so
@@ -167,6 +169,7 @@ class FreeformPatch:
             start: Ball centres, shape (N, 3), artefact frame, mm.
             direction: Of travel, unit vectors, shape (N, 3) or (3,).
             radius: Of the ball, mm.
+            first: Where the search starts, from `contact_start`; None to determine it here.
 
         Returns:
             uv (N, 2) and travel (N,); nan where the ball misses the face or Newton does not
@@ -174,12 +177,12 @@ class FreeformPatch:
         """
         p = apply(self.T_patch_artefact, rows(start))
         d = turn(self.T_patch_artefact, unit(rows(direction, len(p))))
-        uv, travel = self.contact_start(rows(start), rows(direction, len(p)), radius)
+        uv, travel = first or self.contact_start(rows(start), rows(direction, len(p)), radius)
         hit_uv, hit_travel = np.full((len(p), 2), np.nan), np.full(len(p), np.nan)
         aimed = np.flatnonzero(np.isfinite(travel))
         if len(aimed):
-            first = Hit(uv[aimed], travel[aimed])
-            found = ball_contact(self.jet, self.domain, p[aimed], d[aimed], radius, first)
+            near = Hit(uv[aimed], travel[aimed])
+            found = ball_contact(self.jet, self.domain, p[aimed], d[aimed], radius, near)
             hit_uv[aimed], hit_travel[aimed] = found
         return Hit(hit_uv, hit_travel)
 
@@ -206,6 +209,12 @@ class FreeformPatch:
             best[some] = np.argmin(entry, axis=1)
             travel[some] = np.take_along_axis(entry, best[some, None], axis=1)[:, 0]
         return Hit(uv[best], travel + fat - radius)
+
+    @cached_property
+    def extremes(self) -> tuple[float, float]:
+        """Height of the highest point, mm, and steepest slope, rad, on a 1 mm grid of the face."""
+        j = self.jet(self.grid(1.0))
+        return float(j.h.max()), float(np.arctan(np.hypot(j.hu, j.hv).max()))
 
     @cached_property
     def sharpest_valley(self) -> float:

@@ -167,14 +167,11 @@ def _length(*coordinates: Array) -> Array:
 
 def column(patch: FreeformPatch, foot: float | None = None) -> Column:
     """The column of a patch with its highest point and steepest slope found on a 1 mm grid."""
-    uv = patch.grid(1.0)
+    top, slope = patch.extremes
     # between the nodes of the grid the lid can be higher by slope times half a pitch at most, and
     # hardly steeper: a tenth of a millimetre and two degrees cover every design that check() passes
     return Column(
-        patch=patch,
-        top=float(patch.height(uv).max()) + 0.1,
-        steepest=float(np.cos(min(patch.slope(uv).max() + 0.035, 1.5))),
-        foot=foot,
+        patch=patch, top=top + 0.1, steepest=float(np.cos(min(slope + 0.035, 1.5))), foot=foot
     )
 
 

@@ -36,10 +36,6 @@ _SCATTER_SIZE = 3000  # candidate touches of the ideal scatter
 _DRAWS = 5  # of random touches, averaged
 COUNTS = (4, 5, 7, 13)  # numbers of spheres of the rivals
 
-RIVAL_ROUNDS = 20
-"""Rounds on the way to the relaxed optimum of a rival: exchanges improve the rest, and a hundred
-rounds took half a minute per body."""
-
 
 @dataclass(frozen=True)
 class Rival:
@@ -260,7 +256,7 @@ def _judged(jobs: Sequence[_Job], options: TouchOptions, library: Visibility) ->
     for job in jobs:
         here, tried, chosen = job.here, job.tried, job.lots[0]
         if job.is_relaxed:
-            chosen = tried[chosen_touches_on(here, tried, options, RIVAL_ROUNDS)[0]]
+            chosen = tried[chosen_touches_on(here, tried, options)[0]]
         elif job.by:
             chosen = chosen_touches(here, here.objectives[job.by], tried, options)
         available = len(tried) if here.body is None else _count_different(tried)

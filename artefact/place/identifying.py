@@ -27,7 +27,6 @@ from matstd.artefact.worth import (
 )
 from matstd.information.criteria import Posterior
 from matstd.information.selection import Certificate
-from matstd.twin.beside import beside
 from matstd.twin.errors import NotBuildable, NotReachable
 from matstd.twin.frames import Array
 
@@ -110,24 +109,22 @@ def identifying_choices(
 
     The cost of faces is first estimated from the touches on the balls alone that remain possible,
     completed and exchanged: within half a percent of the whole search, in a tenth of its time. Then
-    balls and table poses are also chosen anew beside the same faces, on the second core, unless the
-    faces cost a negligible part of the value of the balls alone.
+    balls and table poses are also chosen anew beside the same faces, unless the faces cost a
+    negligible part of the value of the balls alone.
     """
     drawn, choice = _best_draw(criterion, bodies, bases, options), options.choice
-    given = criterion, places, drawn.standard, all_poses, choice
-    with beside(_with_moved_balls, *given) as moved:
-        here = criterion.on(replace(drawn.standard, patches=()))
-        chosen, nearness = chosen_touches_on(here, drawn.tried, choice, begin=drawn.chosen)
-        first = Identifying(
-            standard=drawn.standard,
-            poses=drawn.poses,
-            tried=drawn.tried,
-            chosen=chosen,
-            nearness=nearness,
-        )
-        if first.nearness.value <= _NEGLIGIBLE_COST * bases[0].value:
-            return [first]
-        other = moved()
+    here = criterion.on(replace(drawn.standard, patches=()))
+    chosen, nearness = chosen_touches_on(here, drawn.tried, choice, begin=drawn.chosen)
+    first = Identifying(
+        standard=drawn.standard,
+        poses=drawn.poses,
+        tried=drawn.tried,
+        chosen=chosen,
+        nearness=nearness,
+    )
+    if first.nearness.value <= _NEGLIGIBLE_COST * bases[0].value:
+        return [first]
+    other = _with_moved_balls(criterion, places, drawn.standard, all_poses, choice)
     if other is None or other.nearness.value >= first.nearness.value:
         return [first]
     return [other, first]

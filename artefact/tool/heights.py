@@ -20,7 +20,7 @@ _SWING = 25
 """Samples of every axis that turns in a move: all turn, in no order that is known. Half a turn is
 cut every 7 degrees, between which nothing within 300 mm of an axis rises by 0.6 mm."""
 
-_FINE_SWING = 97  # samples where the first ones do not decide: a sixteenth of that rise
+_SWINGS = (9, _SWING, 97)  # samples one after another, until they decide; each has a ninth the rise
 
 
 class SolidHull(NamedTuple):
@@ -104,7 +104,7 @@ def top_height(chain: Chain, rotary: Array, solid: SolidHull, probe: Probe) -> A
 
 
 def swing_height(
-    chain: Chain, path: Array, solid: SolidHull, probe: Probe, allowed: float = np.inf
+    chain: Chain, path: Array, solid: SolidHull, probe: Probe, allowed: float = -np.inf
 ) -> Array:
     """Highest `top_height` along a path of the rotary axes, whichever turns first; from above.
 
@@ -114,7 +114,7 @@ def swing_height(
     Args:
         path: Rotary readings in order, shape (W, R), rad.
         solid: What stands on the table, table frame.
-        allowed: Reading of Z that must not be exceeded, mm.
+        allowed: Reading of Z that must not be exceeded, mm: below it a coarse bound will do.
 
     Returns:
         Of each of the W - 1 moves, mm.
@@ -122,10 +122,10 @@ def swing_height(
     arms = _arms(chain, solid, probe)
     highest = np.empty(len(path) - 1)
     for i, (start, end) in enumerate(pairwise(path)):
-        for samples in (_SWING, _FINE_SWING):
+        for samples in _SWINGS:
             met, rise = _swing_maximum(chain, start, end - start, samples, solid, probe, arms)
             highest[i] = met + rise
-            if met > allowed or highest[i] <= allowed:
+            if highest[i] <= allowed or (met > allowed and samples >= _SWING):
                 break
     return highest
 

@@ -17,7 +17,6 @@ from matstd.artefact.body import DatumSphere, FreeformPatch, Standard
 from matstd.artefact.reach import Mask, ProbeReach, Requests, joined
 from matstd.artefact.worth.touch_criterion import Criterion
 from matstd.information.selection import (
-    ROUNDS,
     Certificate,
     Quota,
     Selection,
@@ -45,7 +44,7 @@ _LOT = 1000  # touches looked at together
 _POSE_CROWDING = 1.6  # even shares of the touches that one table pose may have
 _EDGE = 3.0  # mm a touch stays away from the trimmed edge of a face
 _OVERSHOOT = 6.0 * DEG  # left at the ends of a rotary travel, to approach readings from both sides
-_RELAXED_GAP = 2e-3  # relative gap to which the relaxed optimum is sought
+_RELAXED_GAP = 5e-3  # relative gap to which the relaxed optimum is sought; whole touches cost 3 %
 _SPHERE_LOWEST = -5.0 * DEG  # elevation of the lowest touches on a datum sphere
 
 
@@ -226,7 +225,6 @@ def chosen_touches_on(
     criterion: Criterion,
     tried: Requests,
     options: TouchOptions,
-    rounds: int = ROUNDS,
     begin: Mask | None = None,
 ) -> tuple[Mask, Certificate]:
     """Single touches, and how near they are to the best that crowd no table pose.
@@ -234,7 +232,6 @@ def chosen_touches_on(
     The relaxed optimum comes first; its heaviest touches are exchanged until nothing is gained.
 
     Args:
-        rounds: Most looks at all candidates on the way to the relaxed optimum; exchanges follow.
         begin: A choice that is known, (N,): it stays where nothing better is found; None for none.
 
     Returns:
@@ -246,7 +243,7 @@ def chosen_touches_on(
     n, quotas = options.touches, _pose_quotas(tried, options)
     W = criterion.rows(tried)
     start = heaviest(np.linalg.norm(W, axis=1), n, quotas)
-    best = relaxed(criterion.objective, W, n, start, _RELAXED_GAP, quotas, rounds)
+    best = relaxed(criterion.objective, W, n, start, _RELAXED_GAP, quotas)
     choice = rounded(criterion.objective, W, best.weight, n, most=n // 2, quotas=quotas)
     if begin is not None:
         choice = min(

@@ -17,7 +17,7 @@ same methods:
     pair        numerators of two rows with one another, (2, 2), for their reaches (R, 2)
     flow_slope  how fast the value falls at the flow t between two rows (`relaxation`)
     after_flow  change of ``w^T S w`` of all rows, (N,), when ``M^-1`` falls by
-                ``reach inner reach^T``, with the reaches (R, 2) of two rows and inner (2, 2)
+                ``reach inner reach^T``, with reaches (R, k) of some rows and inner (k, k)
 """
 
 from dataclasses import dataclass

@@ -8,11 +8,11 @@ limits how many of a kind are chosen.
 
 from matstd.information.selection.certificate import Certificate, rounded
 from matstd.information.selection.groups import best_groups
-from matstd.information.selection.relaxation import ROUNDS, relaxed
+from matstd.information.selection.relaxation import relaxed
 from matstd.information.selection.shares import heaviest
 from matstd.information.selection.touch_selection import Quota, Selection, exchange, fill
 
 __all__ = [
-    "ROUNDS", "Certificate", "Quota", "Selection", "best_groups", "exchange", "fill", "heaviest",
+    "Certificate", "Quota", "Selection", "best_groups", "exchange", "fill", "heaviest",
     "relaxed", "rounded",
 ]  # fmt: skip

@@ -15,6 +15,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.linalg import block_diag
 from scipy.optimize import brentq
 
 from matstd.information.criteria import DesignCriterion, Tangent
@@ -62,8 +63,9 @@ def slope(criterion: DesignCriterion, information: Array) -> Slope:
 
 _STEPS = 400  # vertex exchanges between two looks at all candidates
 _STEPS_CURVED = 40  # the same along one tangent of a criterion that is curved
-ROUNDS = 100
-_REFRESH = 50
+_ROUNDS = 100  # looks at all candidates, at most
+_PAIRS = 8  # exchanges found by the same gains
+_REFRESH = 200
 _HALVINGS = 8
 _PATIENCE = 3  # looks without progress before the mean is sharpened, or the search given up
 _SHARPEST = 1000.0
@@ -92,7 +94,6 @@ def relaxed(
     start: Mask,
     tolerance: float = 2e-3,
     quotas: tuple[Quota, ...] = (),
-    rounds: int = ROUNDS,
 ) -> Relaxed:
     """Nearly the best fractions of touches, by vertex exchange on the candidates that matter.
 
@@ -104,7 +105,6 @@ def relaxed(
         start: A choice of as many rows to start from, (N,).
         tolerance: Relative gap between value and bound that is close enough.
         quotas: Shares that fractions and whole choices have to keep.
-        rounds: Most looks at all candidates.
 
     Raises:
         DesignError: Fewer candidates than touches, a start of another number, or one that does not
@@ -117,7 +117,7 @@ def relaxed(
     x = start.astype(np.float64)
     cell, lowest = cells(quotas, len(W)), np.inf
     bound, steps, stalled = 0.0, 0, 0
-    for _ in range(rounds):
+    for _ in range(_ROUNDS):
         there = np.flatnonzero(x > 0.0)
         information = (W[there] * x[there, None]).T @ W[there]
         here = slope(criterion, information)
@@ -187,10 +187,13 @@ class _Board:
         member = self.order[self.first]
         self.kinds = np.array([q.kind[member] for q in quotas])  # (Q, cells)
 
-    def best(self, gain: Array, x: Array) -> tuple[int, int, float]:
-        """The pair of rows between which a flow helps most, to and from, and its room."""
-        up = np.where(x < 1.0, gain, -np.inf)
-        down = np.where(x > 0.0, gain, np.inf)
+    def best(self, up: Array, down: Array, x: Array) -> tuple[int, int, float]:
+        """The pair of rows between which a flow helps most, to and from, and its room.
+
+        Args:
+            up: Gain of every row that may take some; -inf of others, (N,).
+            down: Gain of every row that may give some; inf of others, (N,).
+        """
         if not self.quotas:
             i, j = int(np.argmax(up)), int(np.argmin(down))
             return i, j, np.inf
@@ -221,30 +224,46 @@ class _Board:
 def _exchanged(
     criterion: DesignCriterion, W: Array, x: Array, quotas: tuple[Quota, ...]
 ) -> tuple[Array, int]:
-    """Vertex exchanges among a few candidates: their new weights, and how many were made."""
-    x = x.copy()
+    """Vertex exchanges among a few candidates: their new weights, and how many were made.
+
+    Pairs of different rows are found by the same gains, a few at a time; each flow is the best one
+    after those before it, and all gains are then updated together.
+    """
+    x, made, due = x.copy(), 0, 0
     board = _Board(quotas, len(x))
     tangents = criterion.tangents((W * x[:, None]).T @ W)
     most_steps = _STEPS_CURVED if criterion.is_curved else _STEPS
-    for step in range(most_steps):
-        if step % _REFRESH == 0:
+    while made < most_steps:
+        if made >= due:
             here = slope(criterion, (W * x[:, None]).T @ W)
-            inverse, gain = here.inverse.copy(), here.gains(W)
-        up, down, room = board.best(gain, x)
-        if not gain[up] > gain[down] * (1.0 + 1e-9):
-            return x, step
-        pair = W[[up, down]]
-        reach = inverse @ pair.T  # (S, R, 2)
-        h = pair @ reach
-        k = np.stack([t.pair(r) for t, r in zip(tangents, reach, strict=True)])
-        flow = _best_flow(tangents, h, k, min(1.0 - x[up], x[down], room))
-        x[up] = 1.0 if flow == 1.0 - x[up] else x[up] + flow
-        x[down] = 0.0 if flow == x[down] else x[down] - flow
-        turned = np.linalg.solve(np.diag([1.0 / flow, -1.0 / flow]) + h, np.eye(2)[None])
+            inverse, gain, due = here.inverse.copy(), here.gains(W), made + _REFRESH
+        up, down = np.where(x < 1.0, gain, -np.inf), np.where(x > 0.0, gain, np.inf)
+        before, reaches, inners = inverse.copy(), list[Array](), list[Array]()
+        for _ in range(_PAIRS):
+            i, j, room = board.best(up, down, x)
+            if not up[i] > down[j] * (1.0 + 1e-9):
+                break
+            up[[i, j]], down[[i, j]] = -np.inf, np.inf
+            pair = W[[i, j]]
+            reach = inverse @ pair.T  # (S, R, 2)
+            h = pair @ reach
+            k = np.stack([t.pair(r) for t, r in zip(tangents, reach, strict=True)])
+            flow = _best_flow(tangents, h, k, min(1.0 - x[i], x[j], room))
+            x[i] = 1.0 if flow == 1.0 - x[i] else x[i] + flow
+            x[j] = 0.0 if flow == x[j] else x[j] - flow
+            turned = np.linalg.solve(np.diag([1.0 / flow, -1.0 / flow]) + h, np.eye(2)[None])
+            for s, one in enumerate(reach):
+                inverse[s] -= one @ turned[s] @ one.T
+            reaches.append(reach)
+            inners.append(turned)
+        if not reaches:
+            break
+        made += len(reaches)
+        together = np.concatenate(reaches, axis=2)
         for s, tangent in enumerate(tangents):
-            gain = gain + tangent.after_flow(W, inverse[s], reach[s], turned[s])
-            inverse[s] -= reach[s] @ turned[s] @ reach[s].T
-    return x, most_steps
+            inner = block_diag(*(turned[s] for turned in inners))
+            gain = gain + tangent.after_flow(W, before[s], together[s], inner)
+    return x, made
 
 
 def _best_flow(tangents: Sequence[Tangent], h: Array, k: Array, most: float) -> float:

@@ -43,9 +43,10 @@ def largest_sum(gain: Array, count: int, quotas: tuple[Quota, ...] = ()) -> Sum:
         top = np.argpartition(gain, len(gain) - count)[len(gain) - count :]
         x[top] = 1.0
         return Sum(float(gain[top].sum()), x)
-    # rows of a cell differ in gain alone: only its best can enter, up to the number of its shares
+    # rows of a cell differ in gain alone: only its best can enter, up to the number of its shares;
+    # the next one gives the share its multiplier, without which the bound is loose
     room = np.min([q.most[q.kind] for q in quotas], axis=0)
-    few = np.flatnonzero(rank_in_cell(gain, cells(quotas, len(gain))) < np.minimum(room, count))
+    few = np.flatnonzero(rank_in_cell(gain, cells(quotas, len(gain))) <= np.minimum(room, count))
     A, b = _constraints(quotas, few)
     scale = float(np.abs(gain).max()) or 1.0
     found = linprog(

@@ -1,6 +1,7 @@
 """Which languages there are, and which one a file is written in."""
 
 from collections.abc import Mapping
+from functools import lru_cache
 from os.path import splitext
 from pathlib import Path
 
@@ -15,9 +16,9 @@ LANGUAGES: Mapping[str, Language] = {"klartext": KLARTEXT, "gcode": GCODE}
 """By the name that dialects give."""
 
 
+@lru_cache
 def language_of(path: str | Path) -> Language:
     """Language of a program file, by the ending of its name."""
-    # asked at every block of a program, and a path takes ten times as long to make
     return GCODE if splitext(path)[1].lower() == GCODE.ending else KLARTEXT
 
 

@@ -168,7 +168,8 @@ def _with_heights(task: _Task, stops: list[Visit]) -> list[Visit]:
     tops = top_height(chain, rotary, solid, probe) + options.clearance
     heights = np.array([task.whole(top) for top in tops])
     home = home_readings(chain)
-    swing = swing_height(chain, rotary_path(home, stops, home), solid, probe).max(initial=-np.inf)
+    allowed, path = task.top - 0.5 * options.clearance, rotary_path(home, stops, home)
+    swing = swing_height(chain, path, solid, probe, allowed).max(initial=-np.inf)
     highest = max(heights.max(), swing + 0.5 * options.clearance)
     if highest > task.top:
         raise NotReachable(
