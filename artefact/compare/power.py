@@ -21,6 +21,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.special import chdtri, chndtr
 
 from matstd.artefact.reach import Requests
 from matstd.artefact.worth import Criterion
@@ -71,8 +72,6 @@ def proof_power(
         normals: At every pose of the volume, (M, 3), table frame: only errors along them count.
             None counts every direction.
     """
-    from scipy.stats import chi2, ncx2
-
     sd, reach = criterion.prior_sd, criterion.reach
     poses, tip = criterion.at_volume, criterion.tip_volume * sd
     W, C = criterion.whitened(identifying), criterion.calibrated(identifying)
@@ -95,10 +94,8 @@ def proof_power(
         names.append(effect.name)
         noncentral.append(np.sum(whitened**2, axis=0))
     n = len(proving)
-    power = ncx2.sf(chi2.isf(FALSE_ALARM, n), n, np.array(noncentral).reshape(-1, _MIXES)).mean(
-        axis=1
-    )
-    return Power(touches=n, effects=tuple(names), power=np.asarray(power))
+    missed = chndtr(chdtri(n, FALSE_ALARM), n, np.array(noncentral).reshape(-1, _MIXES))
+    return Power(touches=n, effects=tuple(names), power=1.0 - missed.mean(axis=1))
 
 
 def task_normals(criterion: Criterion, like: Requests, rng: np.random.Generator) -> Array:

@@ -1,6 +1,7 @@
 """All that follows from a standard by rule."""
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -66,6 +67,7 @@ def engraved_on(standard: Standard) -> Array:
     return np.concatenate(places)
 
 
+@lru_cache(maxsize=2)
 def _added(
     standard: Standard,
 ) -> tuple[dict[str, Side], tuple[Bore, ...], tuple[Lettering, ...], tuple[str, ...]]:

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.special import stdtrit
 
 CONFORMITY = 0.95  # probability that a feature is what it is said to be: the default of the rule
 
@@ -44,6 +45,4 @@ def guarded(tolerance: float, u: float, dof: float, bias: float = 0.0) -> Guarde
     Reference:
         ISO 14253-1:2017, 5 (rules for proving conformity and nonconformity).
     """
-    from scipy.stats import t
-
-    return Guarded(tolerance, float(t.ppf(CONFORMITY, dof)) * u + float(np.abs(bias)))
+    return Guarded(tolerance, float(stdtrit(dof, CONFORMITY)) * u + float(np.abs(bias)))

@@ -26,6 +26,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from scipy.special import stdtrit
 
 from matstd.diagnosis.task.predictive import expected_error
 from matstd.diagnosis.task.visits import Visits
@@ -66,9 +67,7 @@ class TaskUncertainty:
     @cached_property
     def k(self) -> float:
         """Coverage factor."""
-        from scipy.stats import t
-
-        return float(t.ppf(0.5 + 0.5 * LEVEL, self.dof))
+        return float(stdtrit(self.dof, 0.5 + 0.5 * LEVEL))
 
     @property
     def U(self) -> float:

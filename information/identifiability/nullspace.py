@@ -15,7 +15,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.optimize import linprog
 from scipy.sparse.csgraph import connected_components
 
 from matstd.twin.frames import Array
@@ -207,6 +206,8 @@ def _smallest(N: Array, lead: int) -> Array | None:
         return None
     # z = N^T c with -t <= z <= t, smallest sum of t
     unit = np.eye(p)
+    from scipy.optimize import linprog
+
     found = linprog(
         np.concatenate([np.zeros(g), np.ones(p)]),
         A_ub=np.block([[N.T, -unit], [-N.T, -unit]]),

@@ -11,7 +11,6 @@ Reference:
 """
 
 import numpy as np
-from scipy.optimize import brentq
 from scipy.special import log_ndtr
 
 from matstd.twin.frames import Array
@@ -45,6 +44,8 @@ def exceedance(weight: Array, square: Array, x: float, count: Array | None = Non
 
 def quantile(weight: Array, risk: float) -> float:
     """The x that the central Q exceeds with probability `risk`."""
+    from scipy.optimize import brentq
+
     none = np.zeros_like(weight)
     high = float(np.sum(weight) + 40.0 * np.sqrt(2.0 * np.sum(weight**2)))
     return float(brentq(lambda x: exceedance(weight, none, x)[0] - risk, 1e-12 * high, high))

@@ -16,7 +16,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import block_diag
-from scipy.optimize import brentq
 
 from matstd.information.criteria import DesignCriterion, Tangent
 from matstd.information.selection.shares import cells, keeps, largest_sum, rank_in_cell
@@ -274,6 +273,8 @@ def _best_flow(tangents: Sequence[Tangent], h: Array, k: Array, most: float) -> 
     root of the slope of the sum is found. Of the pair h is ``w M^-1 w``, k ``w M^-1 K M^-1 w``,
     (S, 2, 2).
     """
+    from scipy.optimize import brentq
+
     b = (h[:, 0, 0] - h[:, 1, 1]).tolist()
     d = (h[:, 0, 0] * h[:, 1, 1] - h[:, 0, 1] ** 2).tolist()
     a = (k[:, 0, 0] - k[:, 1, 1]).tolist()

@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import linprog
 from scipy.sparse import csr_array, vstack
 
 from matstd.information.selection.touch_selection import Mask, Quota
@@ -38,6 +37,8 @@ def largest_sum(gain: Array, count: int, quotas: tuple[Quota, ...] = ()) -> Sum:
     Raises:
         DesignError: No fractions keep the shares.
     """
+    from scipy.optimize import linprog  # a third of a second, in processes that choose nothing
+
     x = np.zeros(len(gain))
     if not quotas:
         top = np.argpartition(gain, len(gain) - count)[len(gain) - count :]

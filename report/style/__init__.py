@@ -104,13 +104,15 @@ def figure(
 
 
 def save(drawn: Figure, path: str | Path) -> None:
-    """PNG, written whole or not at all."""
+    """PNG, written whole or not at all; drawn once, where `Figure.savefig` draws twice."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.text import Text
 
     for text in drawn.findobj(Text):
         text.set_text(in_own_unit(text.get_text()))
     with written_whole(path) as part:
-        drawn.savefig(part, dpi=DPI, format="png")
+        drawn.set_dpi(DPI)
+        FigureCanvasAgg(drawn).print_png(part)
 
 
 def nothing(text: str) -> Figure:
