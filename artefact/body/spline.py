@@ -1,6 +1,7 @@
 """Tensor-product B-splines over the plane: values and derivatives at many points at once."""
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -58,9 +59,7 @@ def greville(knots: Array, degree: int) -> Array:
 def basis(knots: Array, degree: int, x: Array, orders: int = 3) -> tuple[np.ndarray, Array]:
     """The degree + 1 B-splines that do not vanish at each x, with up to two derivatives.
 
-    Cox-de Boor recursion on all x at once; the derivatives come from the two lower degrees,
-    ``N'_{i,k} = k (N_{i,k-1} / (t_{i+k} - t_i) - N_{i+1,k-1} / (t_{i+k+1} - t_{i+1}))``.
-    Beyond the ends the outermost polynomial is continued.
+    They are polynomials between two knots; beyond the ends the outermost one is continued.
 
     Args:
         knots: Clamped or not, ascending, shape (poles + degree + 1,).
@@ -69,40 +68,44 @@ def basis(knots: Array, degree: int, x: Array, orders: int = 3) -> tuple[np.ndar
         orders: 1 for the values alone, 3 for two derivatives as well.
 
     Returns:
-        Index of the first of them, shape (N,); values and derivatives, (orders, N, degree + 1).
-
-    Reference:
-        Piegl and Tiller, The NURBS Book, algorithms A2.2 and A2.3.
+        Index of the first of them, shape (N,); values and derivatives, (N, orders, degree + 1).
     """
     count = len(knots) - degree - 1
     span = np.clip(np.searchsorted(knots, x, side="right") - 1, degree, count - 1)
-    near = knots[span + np.arange(1 - degree, degree + 1)[:, None]]  # (2 degree, N)
-    # points along the last axis: half the time of points along the first
-    ladder = [np.ones((1, len(x)))]
-    for d in range(1, degree + 1):
-        left, right = near[degree - d : degree], near[degree : degree + d]
-        share = ladder[-1] / (right - left)
-        ladder.append(_beside((right - x) * share, (x - left) * share))
-    if orders == 1:
-        return span - degree, ladder[degree].T[None]
-    first = _derivative(near, ladder[degree - 1])
-    second = _derivative(near, _derivative(near, ladder[degree - 2]))
-    return span - degree, np.stack([ladder[degree].T, first.T, second.T])
+    power, s = np.zeros((orders, degree + 1, len(x))), x - knots[span]
+    power[0, 0] = 1.0
+    for k in range(degree):
+        power[0, k + 1] = power[0, k] * s
+    for k in range(1, orders):
+        power[k, 1:] = np.arange(1.0, degree + 1.0)[:, None] * power[k - 1, :-1]
+    rows = np.ascontiguousarray(np.moveaxis(power, 2, 0))  # for a product of small matrices
+    return span - degree, rows @ _pieces(knots.tobytes(), degree)[span - degree]
 
 
-def _beside(low: Array, high: Array) -> Array:
-    """Sum of what each of d splines adds to its lower and its upper neighbour, (d + 1, N)."""
-    values = np.zeros((len(low) + 1, low.shape[1]))
-    values[:-1] += low
-    values[1:] += high
-    return values
+@lru_cache(maxsize=64)
+def _pieces(knots: bytes, degree: int) -> Array:
+    """B-splines between any two knots as polynomials of the distance from the lower one.
 
+    Cox-de Boor recursion on coefficients, (poles - degree, degree + 1, degree + 1): for every piece
+    of the knots and every power, the lowest first, the splines that do not vanish there.
 
-def _derivative(near: Array, lower: Array) -> Array:
-    """Derivatives of degree d, (d + 1, N), from values or derivatives of degree d - 1, (d, N)."""
-    d, middle = len(lower), len(near) // 2
-    share = d * lower / (near[middle : middle + d] - near[middle - d : middle])
-    return _beside(-share, share)
+    Reference:
+        Piegl and Tiller, The NURBS Book, algorithm A2.2.
+    """
+    t = np.frombuffer(knots)
+    low = np.arange(degree, len(t) - degree - 1)
+    ladder = np.zeros((len(low), 1, degree + 1))
+    ladder[:, 0, 0] = 1.0
+    with np.errstate(divide="ignore", invalid="ignore"):  # pieces of no length are never asked for
+        for d in range(1, degree + 1):
+            i = low[:, None] + np.arange(d)
+            left, right, here = t[i - d + 1], t[i + 1], t[low][:, None]
+            share = ladder / (right - left)[..., None]
+            times_x = np.concatenate([np.zeros_like(share[..., :1]), share[..., :-1]], axis=2)
+            ladder = np.zeros((len(low), d + 1, degree + 1))
+            ladder[:, :-1] += (right - here)[..., None] * share - times_x
+            ladder[:, 1:] += (here - left)[..., None] * share + times_x
+    return np.ascontiguousarray(np.swapaxes(ladder, 1, 2))
 
 
 @dataclass(frozen=True, eq=False)
@@ -162,9 +165,9 @@ def jet(knots_u: Array, knots_v: Array, degree: tuple[int, int], poles: Array, u
         Derivatives to the second order.
     """
     bu, bv, local = _local(knots_u, knots_v, degree, poles, uv, orders=3)
-    along_u = np.swapaxes(bu, 0, 1) @ local  # (N, 3, kv + 1)
+    along_u = bu @ local  # (N, 3, kv + 1)
     value = {
-        (a, b): np.einsum("nj,nj->n", along_u[:, a], bv[b])
+        (a, b): np.einsum("nj,nj->n", along_u[:, a], bv[:, b])
         for a, b in ((0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2))
     }
     return Jet(*value.values())
@@ -175,8 +178,7 @@ def height(
 ) -> Array:
     """Height alone, (N,), of the tensor spline of `jet`; arguments as there."""
     bu, bv, local = _local(knots_u, knots_v, degree, poles, uv, orders=1)
-    along_u = np.einsum("ni,nij->nj", bu[0], local)
-    return np.einsum("nj,nj->n", along_u, bv[0])
+    return np.einsum("nj,nj->n", (bu @ local)[:, 0], bv[:, 0])
 
 
 def _local(

@@ -237,7 +237,7 @@ def _exchanged(
             here = slope(criterion, (W * x[:, None]).T @ W)
             inverse, gain, due = here.inverse.copy(), here.gains(W), made + _REFRESH
         up, down = np.where(x < 1.0, gain, -np.inf), np.where(x > 0.0, gain, np.inf)
-        before, reaches, inners = inverse.copy(), list[Array](), list[Array]()
+        before, reaches, inners = inverse.copy(), list[Array](), list[np.ndarray]()
         for _ in range(_PAIRS):
             i, j, room = board.best(up, down, x)
             if not up[i] > down[j] * (1.0 + 1e-9):

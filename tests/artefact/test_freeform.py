@@ -60,7 +60,7 @@ def test_basis_is_scipys_with_its_derivatives(degree):
     picked = coefficients[first[:, None] + np.arange(degree + 1)]
     for order in range(3):
         theirs = spline(x, nu=order)
-        ours = np.einsum("nk,nk->n", values[order], picked)
+        ours = np.einsum("nk,nk->n", values[:, order], picked)
         assert np.abs(ours - theirs).max() < 1e-12 * np.abs(theirs).max()
 
 
