@@ -10,8 +10,8 @@ from matstd.information.criteria.design_criterion import DesignCriterion
 from matstd.information.criteria.measures import Determinant, MeanVariance
 from matstd.information.selection.certificate import Certificate, rounded
 from matstd.information.selection.relaxation import _candidates_to_search, relaxed, slope
-from matstd.information.selection.shares import largest_sum
-from matstd.information.selection.touch_selection import Selection, exchange, fill
+from matstd.information.selection.shares import heaviest, largest_sum
+from matstd.information.selection.touch_selection import Quota, Selection, exchange, fill
 from matstd.twin.errors import DesignError
 
 ROUNDING = 1e-9
@@ -73,6 +73,16 @@ def test_fractions_are_those_of_a_foreign_optimiser(is_determinant):
     best = float(np.exp(other.fun))
     assert found.value == pytest.approx(best, rel=2.0 * GAP)
     assert found.bound <= best * (1.0 + 1e-6)
+
+
+@pytest.mark.parametrize("is_determinant", [False, True])
+def test_the_bound_is_tight_where_a_share_binds(is_determinant):
+    criterion, W = case(5, 600, 8, is_determinant)
+    W[:100] *= 1.5  # more of these are useful than may be chosen
+    shares = (Quota(np.arange(600) // 100, np.full(6, 14)),)
+    found = relaxed(criterion, W, 60, heaviest(np.linalg.norm(W, axis=1), 60, shares), GAP, shares)
+    assert found.weight[:100].sum() == pytest.approx(14.0)
+    assert found.gap <= GAP
 
 
 @pytest.mark.parametrize("is_determinant", [False, True])
