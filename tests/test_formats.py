@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from formats import examples, tables, write_examples
+from formats import examples, paths, tables, undescribed, write_examples
 from pydantic_core import PydanticUndefined
 
 from matstd.artefact.body.standard_file import read_standard
@@ -29,7 +29,6 @@ from matstd.twin.files.pose_file import read_poses
 from matstd.twin.files.run_file import read_run
 from matstd.twin.files.sensor_file import read_sensors
 from matstd.twin.machine.ranges import DEFAULT_RANGES
-from matstd.twin.record.several_runs import joined
 from matstd.twin.units import UM, URAD
 
 ROOT = Path(__file__).parents[1]
@@ -199,24 +198,6 @@ def test_classes_of_errors_are_described_with_their_amplitudes():
 # --- the keys of results --------------------------------------------------------------------
 
 
-def paths(value, at=""):
-    """Every key of a JSON value with the way to it."""
-    if isinstance(value, dict):
-        for key, inner in value.items():
-            here = f"{at}.{key}" if at else key
-            yield here
-            yield from paths(inner, here)
-    elif isinstance(value, list):
-        for inner in value:
-            yield from paths(inner, f"{at}[]")
-
-
-def undescribed(value, name):
-    """Keys of a result that its page does not know; `<unit>` stands for any word."""
-    known = [re.sub(r"<\w+>", r"\\w+", re.escape(key)) for key in tables()[name]]
-    return sorted(p for p in set(paths(value)) if not re.fullmatch("|".join(known), p))
-
-
 RESULTS = {
     "diagnosis.json": [
         "diagnosis/files/diagnosis_file.py",
@@ -267,32 +248,18 @@ def test_described_keys_are_those_that_are_written(name):
             assert re.search(rf'"{word}"|\b{word}:', source), key
 
 
-@pytest.fixture(scope="module")
-def warm_up():
-    """A run whose starting model lacks a thermal lag, with rivals and regions."""
-    return read_run(ROOT / "examples" / "hidden_effect" / "warm_up.csv")
-
-
-def test_a_comparison_has_described_keys_alone(warm_up):
+def test_a_comparison_has_described_keys_alone(warm):
     from matstd.diagnosis.answer.comparison import compare
-    from matstd.twin.library.ordinary import ordinary_model
 
-    found = compare(warm_up[::2], ordinary_model(warm_up.touches.chain))
+    found = compare(warm.run[::2])
     words = ["words"] * len(found.structure)
     assert undescribed(comparison_table(found, words, ["remark"]), "comparison.json") == []
 
 
-def test_a_diagnosis_has_described_keys_alone(warm_up):
-    from matstd.diagnosis.answer.run_diagnosis import diagnose
-    from matstd.twin.library.catalogue import proposals
+def test_a_diagnosis_has_described_keys_alone(warm):
+    """One whose starting model lacked a thermal lag, with rivals and regions.
 
-    run = warm_up[warm_up.touches.pose % 3 == 0]
-    few = proposals(run.touches, ("thermal-lag", "backlash"))
-    result = diagnose(run, candidates=few, rng=np.random.default_rng(0))
-    assert result.found
-    assert undescribed(diagnosis_table(result), "diagnosis.json") == []
-    every = warm_up.touches.pose
-    runs = joined({"one": warm_up[every % 4 == 0], "other": warm_up[every % 4 == 1]})
-    table = diagnosis_table(diagnose(runs, candidates=[]))
-    assert table["trend"]["quantities"]
-    assert undescribed(table, "diagnosis.json") == []
+    Keys of several runs are those of `diagnosis/test_several_runs`.
+    """
+    assert warm.found
+    assert undescribed(diagnosis_table(warm), "diagnosis.json") == []

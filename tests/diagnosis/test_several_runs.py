@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from formats import undescribed
 from simulator_case import named
 from simulator_experiment import MACHINES
 from simulator_machine import read_machine
@@ -14,6 +15,7 @@ from matstd.cli import main
 from matstd.diagnosis.answer.run_diagnosis import diagnose
 from matstd.diagnosis.answer.trend import single_change
 from matstd.diagnosis.answer.verdict import Verdict
+from matstd.diagnosis.files import diagnosis_table
 from matstd.diagnosis.fit.identification import fit_run
 from matstd.diagnosis.fit.prior import Prior
 from matstd.diagnosis.geometry.changes import changing
@@ -69,6 +71,12 @@ def test_what_changed_is_reported_with_its_size_and_nothing_else(diagnosed) -> N
     assert change.u < 0.25 * CHANGE
     (sentence,) = change_sentences(diagnosed.trend)
     assert sentence.startswith("from a to b squareness of Y to X (EC0Y) changed from ")
+
+
+def test_keys_of_several_runs_are_described(diagnosed) -> None:
+    table = diagnosis_table(diagnosed)
+    assert table["trend"]["quantities"]
+    assert undescribed(table, "diagnosis.json") == []
 
 
 def test_the_ladder_shows_what_one_geometry_for_all_runs_would_be_worth(diagnosed) -> None:
