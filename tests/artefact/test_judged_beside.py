@@ -17,7 +17,7 @@ POSES = np.array([[a * DEG] for a in (-120.0, -40.0, 40.0, 120.0)])
 
 
 def rivals_of(criterion: Criterion) -> tuple[Rival, ...]:
-    rng, options = np.random.default_rng(1), TouchOptions(touches=24, poses=3, proof=6)
+    rng, options = np.random.default_rng(1), TouchOptions(touches=16, poses=2, proof=4)
     given = criterion, None, POSES, Blank(), options, Visibility(()), rng
     with compared(*given) as others:
         return others.all()
@@ -26,7 +26,7 @@ def rivals_of(criterion: Criterion) -> tuple[Rival, ...]:
 def test_the_same_artefacts_in_the_same_order_to_the_last_bit(
     criterion: Criterion, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(comparison, "_SCATTER_SIZE", 240)
+    monkeypatch.setattr(comparison, "_SCATTER_SIZE", 120)
     alone = rivals_of(criterion)
     monkeypatch.setattr(beside, "CORES", 2)
     shared = rivals_of(criterion)

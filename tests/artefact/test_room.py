@@ -60,7 +60,7 @@ def test_pillars_weigh_what_they_may():
 
 def test_the_lightest_standard_is_reported_and_can_be_built(reach):
     rng = np.random.default_rng(3)
-    faces, balls = freeform_faces(Blank(), 4, 50, rng), balls_on_posts(Blank(), 40, rng)
+    faces, balls = freeform_faces(Blank(), 4, 25, rng), balls_on_posts(Blank(), 25, rng)
     refused = lightest_room(room_among(faces, balls, 4, heavy(19.0)), faces, balls)
     assert not refused.is_light
     with pytest.raises(NotBuildable, match=r"lightest standard found weighs .* limit 19 kg") as why:

@@ -137,7 +137,8 @@ def proposed(kind, folder, *more):
 
 
 @pytest.mark.parametrize(
-    "kind", ["two-tables", *(pytest.param(k, marks=pytest.mark.slow) for k in TABLES)]
+    "kind",
+    [pytest.param(k, marks=() if k == "three-axis" else pytest.mark.slow) for k in TABLES],
 )
 def test_a_proposed_project_passes_the_first_checks_of_a_design(kind, tmp_path, capsys):
     code, path = proposed(kind, tmp_path)

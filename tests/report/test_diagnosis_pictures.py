@@ -43,6 +43,12 @@ def strange(case):
 
 
 @pytest.fixture(scope="module")
+def compared(strange):
+    """The same run beside the ordinary model."""
+    return compare(strange.run, ordinary_model(strange.run.touches.chain))
+
+
+@pytest.fixture(scope="module")
 def written(warm, tmp_path_factory):
     """Folder of its page."""
     place = tmp_path_factory.mktemp("page")
@@ -226,10 +232,10 @@ def test_a_fit_by_itself_and_rivals_that_coincide_are_drawn(warm, tmp_path):
     assert [p.name for p in tmp_path.iterdir()] == ["picture.png"]
 
 
-def test_a_pattern_is_drawn_over_two_variables_and_over_one(strange, tmp_path):
+def test_a_pattern_is_drawn_over_two_variables_and_over_one(strange, compared, tmp_path):
     path = tmp_path / "picture.png"
     shapes = set()
-    for found in compare(strange.run, ordinary_model(strange.run.touches.chain)).structure:
+    for found in compared.structure:
         if len(found.variables) not in shapes:
             shapes.add(len(found.variables))
             drawn = draw_pattern(strange.fit, found, np.random.default_rng(1))
@@ -338,8 +344,8 @@ def test_a_run_without_anything_hidden_says_so(case, tmp_path):
 
 
 @pytest.mark.usefixtures("unrendered")
-def test_page_of_a_comparison_has_its_numbers(warm, tmp_path):
-    found = compare(warm.run, ordinary_model(warm.run.touches.chain))
+def test_page_of_a_comparison_has_its_numbers(compared, tmp_path):
+    found = compared
     path = write_compare_page(found, tmp_path, "run.csv", np.random.default_rng(0))
     page = path.read_text(encoding="utf-8")
     text = text_of(page)

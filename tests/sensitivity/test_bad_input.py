@@ -14,8 +14,11 @@ from matstd.twin.machine.ranges import DEFAULT_RANGES, Ranges
 
 
 @pytest.mark.filterwarnings("error")
-def test_a_machine_without_errors_gives_a_whole_study(chain, workspace, tmp_path, monkeypatch):
+def test_a_machine_without_errors_gives_a_whole_study(
+    chain, workspace, tmp_path, monkeypatch, rendered_alone
+):
     """The two pictures of S, which know nothing of the sizes of errors, are left out."""
+    rendered_alone("volumetric_sections", "variance_shares")
     for name in ("overview", "maps_of_S"):
         monkeypatch.setattr(study_maps, name, lambda _: nothing_to_draw("S"))
     nothing = Population(chain, Ranges({name: (0.0, 0.0) for name in DEFAULT_RANGES}, {}))

@@ -25,7 +25,7 @@ START = 30.0  # s, for the processes of a cluster on a busy machine
 @pytest.fixture(scope="module")
 def study(chain, workspace):
     population = Population(chain)
-    q = latin_hypercube(workspace, 40, np.random.default_rng(7))
+    q = latin_hypercube(workspace, 10, np.random.default_rng(7))
 
     def run(workers, report=None):
         progress = {"progress": lambda _, done, __: report(done)} if report else {}
