@@ -65,17 +65,6 @@ def changed(standard, number, **what):
     return replace(standard, patches=tuple(patches))
 
 
-def test_patch_beyond_the_blank(standard):
-    low = replace(standard, blank_height=140.0)
-    with pytest.raises(NotBuildable, match="FF1: height is 15"):
-        check(low, LIMITS)
-    T = standard.patches[5].T_artefact_patch.copy()
-    T[:3, 3] += [60.0, 0.0, 0.0]
-    wide = changed(standard, 5, T_artefact_patch=T)
-    with pytest.raises(NotBuildable, match="FF6: reach beyond the outline of the blank"):
-        check(wide, LIMITS)
-
-
 def test_column_that_leans_out_through_the_side_of_the_base():
     # looks inwards at 45 degrees, so its column runs outwards: its outer corners pass the top of
     # the base at radius + 18 cos 45 + (height + 18 sin 45 - 30), here 5 mm within the outline,
@@ -87,22 +76,6 @@ def test_column_that_leans_out_through_the_side_of_the_base():
     assert overhang(leaning, base) == pytest.approx(0.5 * base.thickness - 5.0, abs=1e-9)
     further_in = replace(site, radius=radius - 10.0)
     assert overhang(patch_of_site("FF1", further_in, base), base) == pytest.approx(0.0, abs=1e-9)
-
-
-def test_overlapping_patches(standard):
-    T = standard.patches[1].T_artefact_patch.copy()
-    T[:3, 3] = 0.5 * (T[:3, 3] + standard.patches[0].T_artefact_patch[:3, 3])
-    crowded = changed(standard, 1, T_artefact_patch=T)
-    with pytest.raises(NotBuildable, match=r"FF[12]: room for the ball before FF[12]"):
-        check(crowded, LIMITS)
-
-
-def test_sphere_too_near_a_patch(standard):
-    near = standard.patches[5].point(np.zeros((1, 2)))[0] + 8.0 * standard.patches[5].direction
-    spheres = (replace(standard.spheres[0], centre=near), *standard.spheres[1:])
-    crowded = replace(standard, spheres=spheres)
-    with pytest.raises(NotBuildable, match="SPH1"):
-        check(crowded, LIMITS)
 
 
 def test_hole_under_a_patch(standard):

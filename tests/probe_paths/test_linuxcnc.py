@@ -16,7 +16,6 @@ from matstd.artefact.tool.probe import Probe
 from matstd.probe_paths.campaign.contact_solver import VirtualMachine
 from matstd.probe_paths.campaign.virtual_run import run_programs
 from matstd.probe_paths.control.interpreter import interpret
-from matstd.probe_paths.control.log import read_log
 from matstd.probe_paths.control.steps import ProbeStep
 from matstd.probe_paths.emit.program import make_programs
 from matstd.probe_paths.language.dialect_file import read_dialect
@@ -248,32 +247,6 @@ def started(made, twins, small, machine, folder):
     return run_on_linuxcnc(made.programs, files, contact, folder / "probe")
 
 
-@pytest.fixture
-def log(twins, small, crooked):
-    """What the first program logs, cut off in the middle."""
-    run = run_programs([twins[0]], small, crooked, np.random.default_rng(0))[0]
-    text = run.log["MS_A_1.TXT"]
-    return text[: len(text) // 2]
-
-
-def test_a_control_that_dies_half_way_leaves_its_log(
-    made, twins, small, crooked, log, tmp_path, monkeypatch
-):
-    bin_folder, folder = tmp_path / "bin", tmp_path / "machine"
-    bin_folder.mkdir()
-    folder.mkdir()
-    (tmp_path / "half").write_text(log)
-    script = f"cp {tmp_path}/half MS_A_1.TXT; echo ready > headless.txt; echo rtapi_app: killed"
-    stand_in(bin_folder, monkeypatch, script)
-    session = started(made, twins, small, crooked, folder)
-    assert session.outcome == "LinuxCNC died in MS_A_1.ngc: rtapi_app: killed"
-    assert session.logs == {"MS_A_1.TXT": log}
-    (tmp_path / "kept.TXT").write_text(session.logs["MS_A_1.TXT"])
-    (part,) = read_log(tmp_path / "kept.TXT", ("C", "B"))
-    assert 5 < len(part.number) < 24
-    assert not part.is_complete
-
-
 @pytest.mark.parametrize(
     ("script", "outcome"),
     [
@@ -318,12 +291,6 @@ def test_a_control_that_hangs_is_ended(made, twins, small, crooked, tmp_path, mo
     session = run_on_linuxcnc(made.programs, files, contact, folder / "probe")
     assert session.outcome == "what the twin refused"
     assert not (bin_folder / "lock").exists()
-
-
-def test_without_linuxcnc_there_is_one_line(monkeypatch, tmp_path):
-    monkeypatch.setenv("PATH", str(tmp_path))
-    with pytest.raises(DesignError, match=r"not installed here \(linuxcnc, halcmd, halrun not fou"):
-        installed("")
 
 
 def test_a_second_linuxcnc_is_not_started(monkeypatch, tmp_path):

@@ -160,11 +160,6 @@ def test_too_few_touches_for_a_set_up_leave_it_where_it_was_believed(parts, smal
     assert np.abs(run.deviation).max() < 0.1 * UM
 
 
-def test_a_log_with_two_runs_is_two_parts(runs, chain):
-    text = runs[0].log["MS_A_1.TXT"]
-    assert len(read_log("L", chain.rotary_axes, text + text)) == 2
-
-
 def test_the_clock_passes_midnight(runs, chain):
     text = runs[0].log["MS_A_1.TXT"].replace("T  8:  ", "T 23: 5").replace("T 23: 5", "T 23: 5", 1)
     lines = text.splitlines()
@@ -175,11 +170,6 @@ def test_the_clock_passes_midnight(runs, chain):
     part = read_log("L", chain.rotary_axes, "\n".join(lines) + "\n")[0]
     assert np.all(np.diff(part.time) >= 0.0)
     assert 400.0 < part.time[-1] < 3600.0
-
-
-def test_a_file_that_is_not_there_gets_one_line(chain, tmp_path):
-    with pytest.raises(BadFile, match="no such file"):
-        read_log(tmp_path / "NONE.TXT", chain.rotary_axes)
 
 
 def test_touches_that_cannot_be_evaluated_are_named(parts, small, golden, chain):
