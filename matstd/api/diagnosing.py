@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from matstd.api.runs import GEOMETRY, Runs, StartingModel, is_learnt_from, starting_run
+from matstd.api.runs import Runs, StartingModel, is_learnt_from, starting_run
 from matstd.api.saved import (
     EFFECT,
     FOUND,
@@ -35,6 +35,7 @@ from matstd.diagnosis.files import (
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.laws import learn_remainder
 from matstd.diagnosis.next_visit import VisitPlan
+from matstd.options import GEOMETRY
 from matstd.report.pages import write_compare_page, write_diagnosis_page
 from matstd.report.run_view import Framed, comparison_view, diagnosis_view
 from matstd.report.words import (

@@ -6,7 +6,7 @@ from functools import cached_property
 from pathlib import Path
 
 from matstd.api.diagnosing import named_effects
-from matstd.api.runs import GEOMETRY, Runs, StartingModel, read_run, starting_run
+from matstd.api.runs import Runs, StartingModel, read_run, starting_run
 from matstd.api.saved import EFFECT, REPORT_FILES, VISIT, Saveable, next_visit, write_learnt
 from matstd.api.standards import Probed, probed_body
 from matstd.diagnosis import laws
@@ -16,6 +16,7 @@ from matstd.diagnosis.geometry import LearntGeometry, learnt_geometry
 from matstd.diagnosis.laws import SecondRun, learn_laws, second_run
 from matstd.diagnosis.next_visit import VisitPlan
 from matstd.diagnosis.search import DiagnosisTask, refined_named
+from matstd.options import GEOMETRY
 from matstd.report.laws import effect_text, law_sentence, no_law_sentence, write_law_page
 from matstd.report.run_view import Framed, learnt_view
 from matstd.twin.files import write_whole

@@ -66,9 +66,9 @@ def read_errors(path: str | Path, chain: Chain) -> list[tuple[Effect, Array]]:
             out.append((_effect(symbol, entry, path, key), np.array([entry.amplitude * unit])))
             if not symbol.is_angular:
                 largest = max(largest, (abs(entry.amplitude), f"{key}.amplitude"))
-    unit, (size, key) = "µm", largest
-    if (slip := in_another_unit([size], unit, USUAL_LARGEST)) and slip[0] == "mm":
-        expected = f"{unit}, the largest usually about {USUAL_LARGEST:g}; is it in {slip[0]}?"
+    word, (size, key) = "µm", largest
+    if (slip := in_another_unit([size], word, USUAL_LARGEST)) and slip[0] == "mm":
+        expected = f"{word}, the largest usually about {USUAL_LARGEST:g}; is it in {slip[0]}?"
         raise BadFile(path, key, f"{size:g}", expected)
     return out
 
