@@ -30,6 +30,7 @@ from matstd.artefact.place.wavy_proof import (
 from matstd.artefact.price import prices_of
 from matstd.artefact.reach import Requests, joined, spread_poses
 from matstd.artefact.worth import BallPlaces, Criterion
+from matstd.twin.compute import Progress
 from matstd.twin.errors import NotBuildable, NotReachable
 from matstd.twin.frames import Array
 from matstd.twin.numbers import rms
@@ -66,6 +67,7 @@ class Site:
     bases: list[Base]
     all_poses: Array  # candidate table poses, (K, R), rad
     effects_at: Array  # where bumps may be, readings of the linear axes, (K, 3), mm
+    progress: Progress
 
     @property
     def options(self) -> PlacementOptions:
@@ -86,6 +88,7 @@ def site_of(
     bodies: BodyChoice | None,
     rivals: tuple[Rival, ...],
     all_poses: Array,
+    progress: Progress,
 ) -> Site:
     """What the families share."""
     bases = ball_bases(criterion.plain, rivals, places, all_poses, brief.options)
@@ -99,6 +102,7 @@ def site_of(
         bases=bases,
         all_poses=all_poses,
         effects_at=at,
+        progress=progress,
     )
 
 
@@ -182,7 +186,7 @@ def _with_faces(site: Site) -> tuple[Identifying, Requests]:
     if bodies is None:
         raise NotBuildable(f"{options.patches} small faces do not fit")
     found = identifying_choices(
-        site.criterion, bodies, site.bases, site.places, site.all_poses, options
+        site.criterion, bodies, site.bases, site.places, site.all_poses, options, site.progress
     )
     return with_proof(found, site.criterion.reach, options.choice.proof)
 

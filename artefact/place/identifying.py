@@ -27,6 +27,7 @@ from matstd.artefact.worth import (
 )
 from matstd.information.criteria import Posterior
 from matstd.information.selection import Certificate
+from matstd.twin.compute import Progress
 from matstd.twin.errors import NotBuildable, NotReachable
 from matstd.twin.frames import Array
 
@@ -104,6 +105,7 @@ def identifying_choices(
     places: BallPlaces,
     all_poses: Array,
     options: PlacementOptions,
+    progress: Progress,
 ) -> list[Identifying]:
     """Balls with the faces that cost least of some draws, and their touches; the best first.
 
@@ -112,7 +114,8 @@ def identifying_choices(
     balls and table poses are also chosen anew beside the same faces, unless the faces cost a
     negligible part of the value of the balls alone.
     """
-    drawn, choice = _best_draw(criterion, bodies, bases, options), options.choice
+    drawn, choice = _best_draw(criterion, bodies, bases, options, progress), options.choice
+    progress("faces", _MAX_REDRAWS + 1, _MAX_REDRAWS + 2)
     here = criterion.on(replace(drawn.standard, patches=()))
     chosen, nearness = chosen_touches_on(here, drawn.tried, choice, begin=drawn.chosen)
     first = Identifying(
@@ -131,11 +134,17 @@ def identifying_choices(
 
 
 def _best_draw(
-    criterion: Criterion, bodies: BodyChoice, bases: list[Base], options: PlacementOptions
+    criterion: Criterion,
+    bodies: BodyChoice,
+    bases: list[Base],
+    options: PlacementOptions,
+    progress: Progress,
 ) -> _Draw:
     """The best of a few draws; a single one where it costs little or nothing compares."""
+    progress("faces", 0, _MAX_REDRAWS + 2)
     best, alone = _draw(criterion, bodies, bases, options), bases[0].value
-    for _ in range(_MAX_REDRAWS if alone else 0):
+    for k in range(_MAX_REDRAWS if alone else 0):
+        progress("faces", k + 1, _MAX_REDRAWS + 2)
         if best.value <= _GOOD_ENOUGH * alone:
             break
         with suppress(NotBuildable, NotReachable):  # the first draw stays

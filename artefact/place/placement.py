@@ -49,10 +49,6 @@ from matstd.twin.compute import Progress, silent
 from matstd.twin.errors import NotBuildable
 from matstd.twin.frames import Array
 
-_CRITERION, _PLACES, _RIVALS, _CHOSEN = 1, 7, 53, 95
-"""Per cent of the time until criterion, places, artefacts of balls and standard are complete: on
-five axes 1.5, 7.5, 53 and 94 % on two busy cores; the rest waits for the other artefacts."""
-
 _MIN_FREE_TOUCHES = 480  # smallest number of free touches that decide which effects are visible
 
 
@@ -117,7 +113,7 @@ def design_standard(
             every limit; the message names what binds.
         NotReachable: The machine reaches too few touches on the standard.
     """
-    progress("placement", 0, 100)
+    progress("candidates", 0, 1)
     reach, blank, options = brief.reach, brief.blank, brief.options
     choice = options.choice
     check_blank(blank.base, reach)
@@ -132,28 +128,25 @@ def design_standard(
         choice.touches,
         brief.population,
     )
-    progress("placement", _CRITERION, 100)
     all_poses = poses_within(reach.chain, brief.rotary, choice.poses) if poses is None else poses
     places = ball_places(criterion.plain, blank, all_poses, rng)
     bodies = _small_faces(brief, places, all_poses, rng)
-    progress("placement", _PLACES, 100)
+    progress("artefacts of balls", 0, 1)
     library = _visible_effects(criterion, max(choice.touches, _MIN_FREE_TOUCHES), rng)
     choices = criterion, places, all_poses, blank, choice, library, rng, options.balls
     with compared(*choices) as others:
-        progress("placement", _RIVALS, 100)
-        site = site_of(brief, criterion, places, bodies, others.of_balls, all_poses)
+        site = site_of(brief, criterion, places, bodies, others.of_balls, all_poses, progress)
         built, families = built_family(site)
         requests, proof, tried = built.requests, built.proof, built.found.tried
         here = criterion.on(replace(built.standard, patches=()))
         powers = _powers(criterion.on(built.standard), built, choice.proof, library, rng)
         standard = with_error_shares(criterion, built.standard, proof)
-        progress("placement", _CHOSEN, 100)
+        progress("other artefacts", 0, 1)
         lots = random_lots(tried, len(requests), rng)
         own = evaluate_rival(
             f"standard {options.name}", here, requests, lots, library, len(tried), standard
         )
         rivals = own, *others.all()
-    progress("placement", 100, 100)
     return Placement(
         standard=standard,
         requests=requests,

@@ -12,7 +12,10 @@ from matstd.workers import add_scheduler
 PLAN = Plan(
     {
         "reach": 0.040,
-        "placement": 0.600,
+        "candidates": 0.031,
+        "artefacts of balls": 0.170,
+        "faces": 0.279,
+        "other artefacts": 0.016,
         "identifiability": 0.020,
         "probing programs": 0.008,
         "proof on the twin": 0.057,
@@ -31,7 +34,10 @@ stages wait for it."""
 LINEAR_PLAN = Plan(
     {
         "reach": 0.052,
-        "placement": 0.389,
+        "candidates": 0.031,
+        "artefacts of balls": 0.170,
+        "faces": 0.172,
+        "other artefacts": 0.016,
         "identifiability": 0.032,
         "probing programs": 0.016,
         "proof on the twin": 0.072,
