@@ -3,9 +3,10 @@
     python benchmarks/progress_estimate.py PROJECT.toml ... [--record events.json]
     python benchmarks/progress_estimate.py --replay events.json ...
 
-Runs every design (minutes each, on an idle machine) and records when its stages report; prints the
-share of every stage, and the estimate at half time over what was left, with the shares of `matstd
-design` and with those of the other recorded designs of machines of its kind.
+Runs every design (minutes each) and records when its stages report: by the clock, and as two idle
+cores would have run it. There a step takes the processor time of this process or that of those
+which it has begun, whichever is larger. Prints the seconds of every stage, and the estimate at half
+time over what was left.
 """
 
 import argparse
@@ -14,59 +15,74 @@ import sys
 import tempfile
 import time
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
+import psutil
 
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
 import matstd  # noqa: E402  (found through the path above)
 from matstd.commands.standard.design import LINEAR_PLAN, PLAN  # noqa: E402
-from matstd.progress import TimeLeft  # noqa: E402
+from matstd.progress import Plan, Watch  # noqa: E402
 
-Events = list[tuple[float, str, int, int]]
-"""Seconds since the beginning, stage, done, total; the last one ends the run."""
 
-PLANS = {True: PLAN, False: LINEAR_PLAN}  # the plan by whether the machine has a rotary axis
+class Event(NamedTuple):
+    """A report; the last one ends the run."""
+
+    clock: float  # since the beginning, s
+    idle: float  # the same on two idle cores, s
+    stage: str
+    done: int
+    total: int
+
+
 EVERY = 1.0  # seconds between two looks at the time left
 
 
-def recorded(path: Path) -> tuple[bool, Events]:
+def recorded(path: Path) -> tuple[bool, list[Event]]:
     """Whether the machine of a project has a rotary axis, and the reports of its design."""
-    events: Events = []
-    begun = time.monotonic()  # the second core works too: processor time of this process is less
+    events, used, begun = list[Event](), dict[int, float](), time.monotonic()
+    spent = [0.0, 0.0]
 
     def note(stage: str, done: int, total: int) -> None:
-        events.append((time.monotonic() - begun, stage, done, total))
+        for child in psutil.Process().children(recursive=True):
+            used[child.pid] = sum(child.cpu_times()[:2])
+        now = [time.process_time(), sum(used.values())]
+        step = max(after - before for after, before in zip(now, spent, strict=True))
+        spent[:] = now
+        idle = step + (events[-1].idle if events else 0.0)
+        events.append(Event(time.monotonic() - begun, idle, stage, done, total))
 
     with tempfile.TemporaryDirectory() as folder:
         project = matstd.Project.read(path)
         project.design(Path(folder) / "out", progress=note)
-    events.append((time.monotonic() - begun, "end", 1, 1))
+    note("end", 1, 1)
     return bool(project.brief.chain.rotary_axes), events
 
 
-def shares(events: Events) -> dict[str, float]:
-    """Share of every stage of the plan in the whole."""
-    out = dict.fromkeys(PLAN.shares, 0.0)
-    stage, since = events[0][1], 0.0
-    for now, name, _, _ in events[1:]:
-        if name in out or name == "end":
-            out[stage] += now - since
-            stage, since = name, now
-    return {name: value / events[-1][0] for name, value in out.items()}
+def seconds(events: list[Event]) -> dict[str, float]:
+    """Of every stage of the plan, on two idle cores."""
+    out = dict.fromkeys(PLAN, 0.0)
+    stage, since = events[0].stage, 0.0
+    for event in events[1:]:
+        if event.stage in out or event.stage == "end":
+            out[stage] += event.idle - since
+            stage, since = event.stage, event.idle
+    return out
 
 
-def replayed(events: Events, known: dict[str, float], usual: float) -> tuple[float, int]:
+def replayed(events: list[Event], plan: Plan, is_idle: bool) -> tuple[float, int]:
     """Estimate over truth at half time, and how often the time left rose."""
-    left = TimeLeft(known, usual)
-    end = events[-1][0]
+    watch, times = Watch.of(plan, 0.0), [one.idle if is_idle else one.clock for one in events]
+    end = times[-1]
     at_half, rises, last, k = np.nan, 0, np.inf, 0
     for now in np.arange(EVERY, end, EVERY):
-        while k < len(events) - 1 and events[k][0] <= now:
-            left.report(*events[k][1:], events[k][0])
+        while k < len(events) - 1 and times[k] <= now:
+            watch.report(*events[k][2:], times[k])
             k += 1
-        shown = left.left(now)
+        shown = watch.left.left(now)
         if shown is not None:
             rises += shown > last + 1e-9
             last = shown
@@ -82,27 +98,20 @@ def main() -> None:
     parser.add_argument("--record", type=Path)
     parser.add_argument("--replay", nargs="*", type=Path, default=[])
     args = parser.parse_args()
-    runs: dict[str, tuple[bool, Events]] = {}
+    runs: dict[str, tuple[bool, list[Event]]] = {}
     for file in args.replay:
         for name, (turns, events) in json.loads(file.read_text(encoding="utf-8")).items():
-            runs[name] = turns, [tuple(event) for event in events]
+            runs[name] = turns, [Event(*event) for event in events]
     for path in args.projects:
         runs[path.parent.name if path.stem == "project" else path.stem] = recorded(path)
         if args.record:
             args.record.write_text(json.dumps(runs), encoding="utf-8")
     for name, (turns, events) in runs.items():
-        own = shares(events)
-        others = [
-            shares(es) for other, (kind, es) in runs.items() if other != name and kind is turns
-        ]
-        mean = {s: float(np.mean([o[s] for o in others])) for s in own} if others else own
-        print(
-            f"{name}: {events[-1][0]:.0f} s: " + ", ".join(f"{s} {v:.3f}" for s, v in own.items())
-        )
-        plan = PLANS[turns]
-        for what, known in (("shares of the tool", plan.shares), ("of its kind", mean)):
-            ratio, rises = replayed(events, dict(known), plan.usual)
-            print(f"  {what}: at half time {ratio:.2f} of what was left, {rises} rises")
+        print(f"{name}: " + ", ".join(f"{s} {v:.1f} s" for s, v in seconds(events).items()))
+        for is_idle, what in ((False, "by the clock"), (True, "on two idle cores")):
+            ratio, rises = replayed(events, PLAN if turns else LINEAR_PLAN, is_idle)
+            end = events[-1].idle if is_idle else events[-1].clock
+            print(f"  {what} {end:.0f} s: at half time {ratio:.2f} of what was left, {rises} rises")
 
 
 if __name__ == "__main__":

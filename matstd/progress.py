@@ -10,7 +10,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, NamedTuple, TextIO
+from typing import TYPE_CHECKING, TextIO
 
 from matstd.stop import raise_if_asked
 from matstd.twin.compute import Progress
@@ -96,12 +96,8 @@ class TimeLeft:
 PERIOD = 10.0  # seconds between two lines where there is no terminal
 
 
-class Plan(NamedTuple):
-    """Stages of a command as they were measured."""
-
-    # share of the whole that every stage takes, in their order; they sum up to one
-    shares: Mapping[str, float]
-    usual: float  # duration of the whole, s
+Plan = Mapping[str, float]
+"""Seconds that the stages of a command take, as they were measured, in their order."""
 
 
 @dataclass(slots=True)
@@ -116,8 +112,9 @@ class Watch:
     @classmethod
     def of(cls, plan: Plan | None, now: float) -> Watch:
         """At the beginning of a command, with its plan if it has one."""
-        left = TimeLeft({}, math.inf, now) if plan is None else TimeLeft(*plan, now)
-        return cls(left, plan is not None)
+        whole = math.inf if plan is None else sum(plan.values())
+        shares = {stage: seconds / whole for stage, seconds in (plan or {}).items()}
+        return cls(TimeLeft(shares, whole, now), plan is not None)
 
     def report(self, stage: str, done: int, total: int, now: float) -> None:
         """Take what the work reports; without a plan a new stage begins its own estimate."""
@@ -174,7 +171,7 @@ def stages(plan: Plan | None = None) -> Iterator[Progress]:
     a stage does not report, so that a log shows that the command lives.
 
     Args:
-        plan: Shares of the stages in a command whose stages are known: the bar shows the whole.
+        plan: Of a command whose stages are known: the bar shows the whole.
     """
     from rich.console import Console
 

@@ -7,7 +7,6 @@ import time
 import numpy as np
 import pytest
 
-from matstd.commands.standard.design import LINEAR_PLAN, PLAN
 from matstd.progress import TimeLeft, Watch, _lines
 
 SHARES = {"first": 0.2, "second": 0.5, "third": 0.3}
@@ -69,12 +68,6 @@ def test_a_stage_that_the_plan_does_not_know_changes_nothing():
     before = left.fraction(50.0)
     left.report("moves of the programs", 3, 4, 50.0)
     assert left.fraction(50.0) == before
-
-
-def test_the_shares_of_a_design_are_shares():
-    for plan in (PLAN, LINEAR_PLAN):
-        assert sum(plan.shares.values()) == pytest.approx(1.0)
-    assert list(PLAN.shares) == list(LINEAR_PLAN.shares)
 
 
 def test_a_line_shows_the_stage_the_share_of_the_whole_and_the_time_left():
