@@ -4,18 +4,22 @@
     python benchmarks/design_machines.py --like [KIND ...]
 
 The second goes the way of a new user for each kind of machine that `matstd new machine --like`
-offers: machine file, proposed project, design. Each gives a design or a refusal in one line.
+offers: machine file, the command that its last line names, design. Each gives a design or a refusal
+in one line.
 Wanted of the first: each of the eight under 240 s on two idle cores, the refusal under 5 s. Wall
 and processor time are printed, so that a busy machine shows.
 """
 
 import os
 import platform
+import shlex
 import subprocess
 import sys
 import tempfile
 import time
 from pathlib import Path
+
+from matstd.commands.machine.new import MACHINES
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 NAMES = (
@@ -29,19 +33,6 @@ NAMES = (
     "machines/upright",
 )
 
-TABLES = {
-    "trunnion": "500",
-    "swivel-45": "630",
-    "two-tables": "320",
-    "fork-portal": "3000 2000",
-    "turn-mill": "315",
-    "three-axis": "900 500",
-    "horizontal": "500 500",
-    "micro": "80",
-    "cmm": "900 1200",
-}
-"""Diameter or sides of the table, mm, that the template of each kind states."""
-
 
 def matstd(*words: str) -> subprocess.CompletedProcess[str]:
     """A command of the tool."""
@@ -51,15 +42,14 @@ def matstd(*words: str) -> subprocess.CompletedProcess[str]:
 
 def first_day(kind: str, folder: Path) -> bool:
     """Print what a new user gets for a kind of machine; whether it is a design or one refusal."""
-    machine, project = str(folder / "machine.toml"), folder / "project.toml"
-    matstd("new", "machine", "--like", kind, "-o", machine)
-    size = TABLES[kind].split()
-    begun = matstd("new", "project", "--machine", machine, "--table-mm", *size, "-o", str(project))
+    made = matstd("new", "machine", "--like", kind, "-o", str(folder / "machine.toml"))
+    words = made.stdout.splitlines()[-1].removeprefix("next: matstd ").partition("   (")[0]
+    begun = matstd(*shlex.split(words))
     if begun.returncode:
         said = begun.stderr.strip().splitlines()
         print(f"{kind}: {' '.join(said)}", flush=True)
         return begun.returncode == 2 and len(said) == 1
-    code, wall, used, said = timed(project, folder / "out")
+    code, wall, used, said = timed(folder / "project.toml", folder / "out")
     programs = len(list((folder / "out" / "programs").glob("*.H")))
     print(f"{kind}: {wall:.0f} s ({used:.0f} s processor), {programs} programs; {said}", flush=True)
     return code == 0 and programs > 0
@@ -81,7 +71,7 @@ def main() -> None:
     print(f"Python {platform.python_version()}, {platform.machine()}, {os.cpu_count()} cores")
     failed: list[str] = []
     if sys.argv[1:2] == ["--like"]:
-        for kind in sys.argv[2:] or TABLES:
+        for kind in sys.argv[2:] or MACHINES:
             with tempfile.TemporaryDirectory() as folder:
                 failed += [kind] * (not first_day(kind, Path(folder)))
         sys.exit(f"failed: {', '.join(failed)}" if failed else 0)

@@ -3,6 +3,7 @@
 A command that knows more than its arguments (a verdict) leaves its own answer in `args.next`.
 """
 
+import re
 import shlex
 from argparse import Namespace
 from collections.abc import Callable
@@ -162,7 +163,8 @@ def _show(args: Namespace) -> Step:
     project = _beside(args.machine, "project.toml")
     if project.exists():
         return called("design", project, "-o", _beside(args.machine, "out")), ""
-    words = called("new", "project", "--machine", args.machine, "-o", project)
+    table = _stated_table(args.machine)
+    words = called("new", "project", "--machine", args.machine, *table, "-o", project)
     return words, "if every axis turns about its place and in its direction"
 
 
@@ -199,13 +201,20 @@ def _new(args: Namespace) -> Step:
     project, folder = _beside(output, "project.toml"), _beside(output, "out")
     return {
         "machine": (
-            called("new", "project", "--machine", output, "-o", project),
+            called("new", "project", "--machine", output, *_stated_table(output), "-o", project),
             "after its numbers are those of your machine",
         ),
         "project": (called("design", output, "-o", folder), ""),
         "run": (called("diagnose", output, "-o", _beside(output, "diagnosis")), ""),
         "effect": (called("effects", "--effects", output), "reads it and tries it"),
     }[args.kind]
+
+
+def _stated_table(machine: str) -> list[str]:
+    """The size of the table that the head of a template states, as an option."""
+    head = Path(machine).read_text(encoding="utf-8")[:1000] if Path(machine).exists() else ""
+    stated = re.search(r"of this size: ([\d x]+) mm", head)
+    return ["--table-mm", *stated[1].split(" x ")] if stated else []
 
 
 _AFTER: dict[str, Callable[[Namespace], Step]] = {
