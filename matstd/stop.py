@@ -21,7 +21,7 @@ PATIENCE = 0.4
 
 
 class _Asked:
-    """Whether somebody asked the command to stop."""
+    """Whether the command was asked to stop."""
 
     to_stop = False
 
@@ -30,7 +30,7 @@ def raise_if_asked() -> None:
     """End the work here if it shall end.
 
     Raises:
-        KeyboardInterrupt: Somebody asked the command to stop.
+        KeyboardInterrupt: The command was asked to stop.
     """
     if _Asked.to_stop:
         raise KeyboardInterrupt
@@ -38,16 +38,15 @@ def raise_if_asked() -> None:
 
 @contextmanager
 def clean_stop() -> Iterator[None]:
-    """Whoever is asked to end, by Ctrl-C or by the system (SIGTERM), tidies up and says so.
+    """A command that is asked to end, by Ctrl-C or by the system (SIGTERM), tidies up and says so.
 
     An interrupt can fall into a place that swallows or renames it (a destructor, the import of a
-    module); it is remembered, so that the next stage of the work, or whatever fails first, ends it.
-    It can also come while a library computes and Python waits for it, or while a pool waits for its
-    workers. Then the process is ended from another thread. Who asks twice does not disturb the
-    tidying.
+    module); it is remembered, so that the next stage of the work, or the first failure, ends it. It
+    can also come while a library computes and Python waits for it, or while a pool waits for its
+    workers; then another thread ends the process. A second request does not disturb the tidying.
 
     Raises:
-        KeyboardInterrupt: However the interrupt came out of the block.
+        KeyboardInterrupt: In whatever form the interrupt left the block.
     """
     if threading.current_thread() is not threading.main_thread():
         yield
@@ -75,7 +74,7 @@ def clean_stop() -> Iterator[None]:
 
 @contextmanager
 def _watched() -> Iterator[None]:
-    """A thread that hears of a signal at once; Python itself does so between two of its steps."""
+    """A thread that receives a signal at once; Python does so between two of its steps."""
     ours, theirs = socket.socketpair()
     theirs.setblocking(False)
     over = threading.Event()
