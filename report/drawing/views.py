@@ -10,7 +10,7 @@ from matstd.report.drawing.sheet import THIN, WIDE, Sheet, View
 from matstd.twin.frames import Array, apply
 from matstd.twin.sampling import grid_points
 
-_SAMPLES = 41  # along an edge of a face
+_SAMPLES = 41  # along an edge of a face, at least: one every 2 mm of a large one
 _LEVELS = 6  # lines of equal height on a face
 
 
@@ -87,16 +87,19 @@ def _patch_from_above(sheet: Sheet, view: View, patch: FreeformPatch) -> None:
     corners = np.array([[-a, -b], [a, -b], [a, b], [-a, b], [-a, -b]])
     rim = apply(patch.T_artefact_patch, np.column_stack([corners, patch.height(corners)]))
     sheet.line(view.at(rim[:, :2]), WIDE, fill="white")
-    u, v = np.linspace(-a, a, _SAMPLES), np.linspace(-b, b, _SAMPLES)
-    uv = grid_points(u, v)
-    points = patch.point(uv)
-    x, y = (view.at(points[:, :2])[:, k].reshape(_SAMPLES, _SAMPLES) for k in (0, 1))
-    z = points[:, 2].reshape(_SAMPLES, _SAMPLES)
-    sheet.contours(x, y, z, _LEVELS)
+    points = _points_over(patch)
+    x, y = np.moveaxis(view.at(points[..., :2].reshape(-1, 2)).reshape(*points.shape[:2], 2), 2, 0)
+    sheet.contours(x, y, points[..., 2], _LEVELS)
     x, y = view.at([rim[:, 0].min(), rim[:, 1].max()])[0] + [2.0, -5.0]
     sheet.line([[x - 1.0, y - 1.0], [x + 9.0, y - 1.0], [x + 9.0, y + 3.5], [x - 1.0, y + 3.5]],
                0.0, fill="white")  # fmt: skip
     sheet.text(x, y, patch.name, size=3.0)
+
+
+def _points_over(patch: FreeformPatch) -> Array:
+    """Points of a face on a regular grid, (U, V, 3), mm."""
+    u, v = (np.linspace(-half, half, max(_SAMPLES, round(half))) for half in patch.half_size)
+    return patch.point(grid_points(u, v)).reshape(len(u), len(v), 3)
 
 
 def _cross(sheet: Sheet, view: View, middle: Array, radius: float) -> None:
@@ -164,9 +167,7 @@ def _name_what_is_seen(sheet: Sheet, view: View, seen: list[_Seen]) -> None:
 
 def _pillar(patch: FreeformPatch, right: Array, towards: Array, foot: float) -> _Seen:
     """Walls, the outline of the face, and its nearer edge."""
-    a, b = patch.half_size
-    u, v = np.linspace(-a, a, _SAMPLES), np.linspace(-b, b, _SAMPLES)
-    grid = patch.point(grid_points(u, v)).reshape(_SAMPLES, _SAMPLES, 3)
+    grid = _points_over(patch)
     if abs(right[0]) < 0.5:  # along x: what was one edge after the other is the depth
         grid = grid.transpose(1, 0, 2)
     along, top = (grid @ right).mean(axis=1), grid[:, :, 2].max(axis=1)

@@ -13,7 +13,7 @@ from matstd.report.style import series
 from matstd.twin.frames import Array, apply, inverse, pose
 
 _BODY, _BALL, _TABLE, _CLAMP, _PROBE = "#b9bec4", "#f0e442", "#dde2e8", "#d55e00", "#5c6878"
-_CELLS = 14  # cells a side of a face
+_CELLS, _CELL = 14, 4.0  # cells a side of a face, at least, and mm of a cell of a large one
 _NOSE = 150.0  # mm of the spindle's nose that are drawn
 
 
@@ -88,7 +88,8 @@ def standard_bodies(standard: Standard) -> list[tuple[str, str, Array]]:
 
 def _pillar(patch: FreeformPatch) -> Array:
     """The face as a grid and the walls of its pillar."""
-    u, v = (np.linspace(-half, half, _CELLS + 1) for half in patch.half_size)
+    counts = [max(_CELLS, round(2.0 * half / _CELL)) for half in patch.half_size]
+    u, v = (np.linspace(-h, h, n + 1) for h, n in zip(patch.half_size, counts, strict=True))
     uv = np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1)
     lid = patch.point(uv.reshape(-1, 2)).reshape(*uv.shape[:2], 3)
     a, b, c, d = lid[:-1, :-1], lid[1:, :-1], lid[1:, 1:], lid[:-1, 1:]

@@ -32,6 +32,7 @@ from matstd.report.words import (
     comparison_remarks,
     features_words,
     identification_lines,
+    shown_line,
     verdict_of_design,
 )
 from matstd.twin.errors import DesignError
@@ -85,10 +86,11 @@ def write_design_page(design: Design, folder: Path) -> list[str]:
         drawn = beside.submit(_renderings, design, folder, remarks)
         curves, live = _curves(design.placement), _live(design)
         standard, volumes = drawn.result()
-    chain, body = design.brief.chain, design.placement.standard
+    chain, placement = design.brief.chain, design.placement
+    body, verdict = placement.standard, verdict_of_design(placement, design.brief.ranges)
     page = Page(
         heading=f"{body.name}: material standard for {chain.name}",
-        lead=verdict_of_design(design.placement, design.brief.ranges),
+        lead=f"{shown_line(placement)} {verdict}".lstrip(),
         means=_meaning(design),
         next=_NEXT,
         key=_key(design),

@@ -20,6 +20,7 @@ _SPHERE = "#f0e442"  # a colour that no patch has
 _PLANE = "#8fae8b"
 _FAR, _STRIDE = 500.0, 2.0  # of a line of sight, mm
 _PITCH = 0.8  # mm, of the drawn grid of a face
+_LARGE = 50.0  # mm, half a side of a face on which its name stands
 _LETTER, _LINE = 11.0, 24.0  # width of a letter and height of a name with their margins, pixels
 
 _NAME_OVER_BALL, _ASIDE = 10.0, 0.7
@@ -184,11 +185,13 @@ def _wanted(standard: Standard, eye: Array, pixel: float) -> list[tuple[str, Arr
             wanted.append((sphere.name, sphere.centre + np.array(beside)))
     for patch in standard.patches:
         a, b = patch.half_size
-        middle = np.zeros((1, 2))
-        if patch.normal(middle)[0] @ eye > 0.05:
+        if patch.normal(patch.grid()).mean(axis=0) @ eye > 0.05:
             sides = patch.point(np.array([[a, 0.0], [-a, 0.0], [0.0, b], [0.0, -b]]))
             sides = sides[np.argsort(-(sides @ up))] + 0.7 * height * up
-            wanted.append((patch.name, np.vstack([sides[:1], patch.point(middle), sides[1:]])))
+            places = [sides[:1], patch.point(np.zeros((1, 2))), sides[1:]]
+            # a name hides a small face and is seen on a large one
+            places = places if min(a, b) < _LARGE else [places[1], places[0], places[2]]
+            wanted.append((patch.name, np.vstack(places)))
     return [*wanted, (standard.plane.name, _free_places(standard, eye))]
 
 

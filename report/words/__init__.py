@@ -19,7 +19,7 @@ from matstd.report.words.diagnosis_words import (
     structure_words,
     values,
 )
-from matstd.report.words.family_words import features_words
+from matstd.report.words.family_words import features_words, shown_line
 from matstd.report.words.probe_words import ball_lines, located_lines
 from matstd.report.words.remark_words import remark_sentence
 from matstd.report.words.sensitivity_words import (
@@ -49,6 +49,7 @@ __all__ = [
     "remark_sentence",
     "sampling_words",
     "scanned_sentence",
+    "shown_line",
     "sizes",
     "stated_noise",
     "structure_words",

@@ -51,16 +51,26 @@ def family_line(placement: Placement) -> str:
     if own.family is Family.WAVY:
         a, b = (round(2.0 * half) for half in placement.standard.patches[0].half_size)
         built += f" of {a} x {b} mm"
-    is_bump, width, direction = own.least
-    least = "a short error of one axis" if is_bump else "a smooth field"
-    words = (
-        f"{built}. {_lead(placement, own, [*by_family.values()])}After {_effort(own)} the "
-        f"effect of {um(SIZE)} rms that shows least ({least}, {width:g} mm wide, along "
-        f"{direction}) has {digits(own.signal, 2)} times its standard uncertainty (detected with "
-        f"{100.0 * own.power:.0f} %), and {_left(own)}"
-    )
+    lead = _lead(placement, own, [*by_family.values()])
+    words = f"{built}. {lead}{_shown(own)}, and {_left(own)}"
     others = [_other(one) for one in by_family.values()]
     return f"{words}. Not built: {'; '.join(others)}." if others else f"{words}."
+
+
+def shown_line(placement: Placement) -> str:
+    """What one wavy face shows of effects that no model has; empty for other families."""
+    own = [one for one in placement.families if one.family is placement.family is Family.WAVY]
+    return f"{_shown(own[0])}." if own else ""
+
+
+def _shown(own: FamilyFigures) -> str:
+    is_bump, width, direction = own.least
+    least = "a short error of one axis" if is_bump else "a smooth field"
+    return (
+        f"After {_effort(own)} the effect of {um(SIZE)} rms that shows least ({least}, {width:g} "
+        f"mm wide, along {direction}) has {digits(own.signal, 2)} times its standard uncertainty "
+        f"(detected with {100.0 * own.power:.0f} %)"
+    )
 
 
 def _lead(placement: Placement, own: FamilyFigures, others: Sequence[FamilyFigures]) -> str:

@@ -14,7 +14,7 @@ from matstd.report.words.design_words import (
     proof_sentence,
     verdict_of_design,
 )
-from matstd.report.words.family_words import family_line
+from matstd.report.words.family_words import family_line, shown_line
 from matstd.twin.machine import Chain
 from matstd.twin.units import UM
 
@@ -121,6 +121,10 @@ def test_the_first_line_says_which_family_wins_and_by_how_much(
     begin = "one wavy face of 180 x 180 mm" if built is Family.WAVY else "2 balls that prove"
     assert line.startswith(f"Built: 13 balls and {begin}. For ")
     assert said in line
+    # a page begins with it where it is why the face was built
+    first = shown_line(made)
+    assert first.startswith("After") == (built is Family.WAVY)
+    assert first.removesuffix(".") in line
 
 
 @pytest.mark.parametrize(
