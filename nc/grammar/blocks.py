@@ -32,13 +32,8 @@ class Block(NamedTuple):
     text: str  # without the number; line ends stand where the block goes on
 
     @property
-    def folded(self) -> str:
-        """On one line, with single spaces."""
-        return " ".join(self.text.split())
-
-    @property
     def bare(self) -> str:
-        """Folded, without its comment, in capitals; names in quotes as they are."""
+        """On one line, without its comment, in capitals; names in quotes as they are."""
         text = " ".join(self.text.partition(";")[0].split())
         return "".join(p if p[:1] == '"' else p.upper() for p in re.split(r'("[^"]*")', text))
 

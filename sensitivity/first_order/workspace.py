@@ -9,11 +9,10 @@ from numpy.typing import NDArray
 from matstd.twin.errors import DesignError, NotReachable, OutsideTravel, UnknownAxis
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain, inverse_linear, tip
-from matstd.twin.sampling import grid_points, latin_points
+from matstd.twin.sampling import latin_points
 
 Box = tuple[tuple[float, float, float], tuple[float, float, float]]
 _ROUNDS = 40  # draws of joints until enough tool points lie in the box
-_MOST_POSES = 2_000_000  # Jacobians of more, with 60 errors, take over 3 GiB
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,36 +76,6 @@ def _inside(workspace: Workspace, q: Array) -> Array:
         slack = 1e-9 * max(high - low, 1.0)
         keep &= (q[:, i] >= low - slack) & (q[:, i] <= high + slack)
     return q[keep]
-
-
-def grid(workspace: Workspace, counts: Mapping[str, int] | int) -> Array:
-    """Regular grid of readings, those outside the volume left out; raises NotReachable.
-
-    Args:
-        counts: Values of each axis, or one number for all; an axis without room, or not named, has
-            one value, the middle.
-
-    Returns:
-        Shape (N, A); the last axis of the chain runs fastest.
-    """
-    chain = workspace.chain
-    each = []
-    for name in chain.axes:
-        count = counts if isinstance(counts, int) else counts.get(name, 1)
-        low, high = workspace.limit(name)
-        single = count == 1 or low == high
-        each.append(np.array([0.5 * (low + high)]) if single else np.linspace(low, high, count))
-    total = int(np.prod([len(v) for v in each], dtype=float))
-    if total > _MOST_POSES:
-        raise DesignError(f"a grid of {total} poses, expected at most {_MOST_POSES}")
-    q = _inside(workspace, grid_points(*each))
-    if not len(q):
-        assert workspace.volume is not None  # the limits alone leave every pose in
-        raise NotReachable(
-            "no pose of the workspace has its tool point in "
-            f"{_spans(workspace.volume)} mm of the table"
-        )
-    return q
 
 
 def latin_hypercube(workspace: Workspace, count: int, rng: np.random.Generator) -> Array:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from matstd.sensitivity.first_order.workspace import Workspace, grid, latin_hypercube, section
+from matstd.sensitivity.first_order.workspace import Workspace, latin_hypercube, section
 from matstd.twin.errors import DesignError, NotReachable, OutsideTravel, UnknownAxis
 from matstd.twin.machine.kinematics import tip
 from matstd.twin.units import DEG
@@ -33,20 +33,13 @@ def test_the_tool_point_stays_in_the_volume(chain):
     for i, axis in enumerate(chain.axes):
         low, high = area.limit(axis)
         assert np.all((q[:, i] >= low - 1e-9) & (q[:, i] <= high + 1e-9))
-    some = grid(area, {"X": 5, "Y": 5, "Z": 6, "B": 3, "C": 3})
-    inside = tip(chain, some, LENGTH)
-    assert 0 < len(some) < 5 * 5 * 6 * 9
-    assert np.all((inside >= VOLUME[0]) & (inside <= VOLUME[1]))
 
 
-def test_grid_and_section(chain, workspace):
-    q = grid(workspace, {"X": 3, "B": 2})
-    assert q.shape == (6, 6)
-    assert np.unique(q[:, chain.axis_index("X")]).tolist() == [-150.0, 0.0, 150.0]
-    assert np.unique(q[:, chain.axis_index("Z")]).tolist() == [-275.0]
+def test_a_section_spans_two_readings(chain, workspace):
     a, b, plane = section(workspace, "X", "C", 4)
     np.testing.assert_array_equal(plane[:4, chain.axis_index("X")], a[0])
     np.testing.assert_array_equal(plane[:4, chain.axis_index("C")], b)
+    assert np.unique(plane[:, chain.axis_index("Z")]).tolist() == [-275.0]
     base = np.arange(6.0)
     held = section(workspace, "X", "C", 4, base)[2]
     assert np.all(held[:, chain.axis_index("Y")] == base[chain.axis_index("Y")])
@@ -55,7 +48,7 @@ def test_grid_and_section(chain, workspace):
 def test_an_axis_without_room_has_one_value(chain):
     area = Workspace(chain, {"B": (0.0, 0.0)}, LENGTH)
     assert "B" not in area.open_axes
-    assert len(grid(area, {"B": 5, "X": 3})) == 3
+    assert np.all(latin_hypercube(area, 5, np.random.default_rng(1))[:, chain.axis_index("B")] == 0)
 
 
 def test_workspaces_that_cannot_be_are_refused(chain):
@@ -66,9 +59,5 @@ def test_workspaces_that_cannot_be_are_refused(chain):
     with pytest.raises(DesignError, match="smaller one first"):
         Workspace(chain, {"X": (10.0, -10.0)})
     far = Workspace(chain, {}, LENGTH, ((2000.0, 0.0, 0.0), (2100.0, 10.0, 10.0)))
-    with pytest.raises(NotReachable, match="no pose"):
-        grid(far, {"X": 3, "Y": 3})
     with pytest.raises(NotReachable, match="only 0 of"):
         latin_hypercube(far, 10, np.random.default_rng(1))
-    with pytest.raises(DesignError, match="expected at most"):
-        grid(Workspace(chain, {}), 40)
