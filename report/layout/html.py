@@ -4,7 +4,6 @@ import base64
 import io
 import re
 from collections.abc import Sequence
-from functools import partial
 from itertools import groupby
 from pathlib import Path
 
@@ -118,7 +117,7 @@ def heading_rows(columns: Sequence[Heading]) -> list[list[tuple[str, int, int, i
     is_grouped = any(isinstance(c, tuple) for c in columns)
     first: list[tuple[str, int, int, int]] = []
     second: list[tuple[str, int, int, int]] = []
-    for group, members in groupby(enumerate(columns), key=partial(_group, columns)):
+    for group, members in groupby(enumerate(columns), key=_group):
         cells = list(members)
         if isinstance(cells[0][1], tuple):
             first.append((group, cells[0][0], len(cells), 1))
@@ -128,7 +127,7 @@ def heading_rows(columns: Sequence[Heading]) -> list[list[tuple[str, int, int, i
     return [first, second] if is_grouped else [first]
 
 
-def _group(columns: Sequence[Heading], cell: tuple[int, Heading]) -> str:
+def _group(cell: tuple[int, Heading]) -> str:
     return cell[1][0] if isinstance(cell[1], tuple) else f"column {cell[0]}"
 
 

@@ -68,7 +68,7 @@ def _data(shown: ShownMachine, bodies: Sequence[Drawn], letters: Sequence[Letter
         "exaggeration": float(10.0 ** np.clip(np.round(2.0 * power) / 2.0, 0.0, 4.0)),
         "bodies": [_body(body) for body in bodies],
         "letters": [{"on": k.on, "text": k.text, "place": list(k.place)} for k in letters],
-        "errors": [_error(chain, one) for one in shown.errors if not one.left_out],
+        "errors": [_error(one) for one in shown.errors if not one.left_out],
         "is_assumed": shown.is_assumed,
         "program": None if shown.program is None else _program(shown.program.thinned()),
         "datum": None
@@ -132,7 +132,7 @@ def _body(body: Drawn) -> TREE:
     }
 
 
-def _error(chain: Chain, one: ErrorFunction) -> TREE:
+def _error(one: ErrorFunction) -> TREE:
     symbol = parse_symbol(one.name)
     return {
         "name": one.name,

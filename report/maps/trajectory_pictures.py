@@ -12,7 +12,6 @@ from matstd.report.words import sampling_words
 from matstd.sensitivity.montecarlo import Volumetric
 from matstd.sensitivity.study import AlongPath, Study, Trajectory
 from matstd.twin.frames import Array
-from matstd.twin.machine import Chain
 from matstd.twin.model import Effect, traits
 from matstd.twin.numbers import rms
 from matstd.twin.units import UM, URAD
@@ -109,12 +108,11 @@ def _plain(axes: Axes) -> None:
 
 def _words(effect: AlongPath) -> str:
     """Errors with shapes and amplitudes, where they are few and of the common kind."""
-    chain = effect.trajectory.chain
-    parts = [_error_words(chain, e, float(np.atleast_1d(a)[0])) for e, a in effect.errors[:8]]
+    parts = [_error_words(e, float(np.atleast_1d(a)[0])) for e, a in effect.errors[:8]]
     return ", ".join(parts) + (" and others" if len(effect.errors) > 8 else "")
 
 
-def _error_words(chain: Chain, effect: Effect, size: float) -> str:
+def _error_words(effect: Effect, size: float) -> str:
     own = traits(effect)
     symbol = own.symbol
     if symbol is None:
