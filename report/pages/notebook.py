@@ -57,29 +57,11 @@ def _fit(fit: Fit) -> str:
     )
 
 
-@text.register
-def _comparison(found: Comparison) -> str:
-    return comparison_sentence(found)
-
-
-@text.register
-def _diagnosis(found: Diagnosis) -> str:
-    return verdict_sentence(found)
-
-
-@text.register
-def _study(study: Study) -> str:
-    return "\n".join(study_words(study))
-
-
-@text.register
-def _identifiability(known: IdentifiabilityReport) -> str:
-    return f"{gist(known)}."
-
-
-@text.register
-def _chain(chain: Chain) -> str:
-    return f"{chain.name}: {chain.notation}"
+text.register(Comparison, comparison_sentence)
+text.register(Diagnosis, verdict_sentence)
+text.register(Study, lambda study: "\n".join(study_words(study)))
+text.register(IdentifiabilityReport, lambda known: f"{gist(known)}.")
+text.register(Chain, lambda chain: f"{chain.name}: {chain.notation}")
 
 
 @text.register
@@ -133,9 +115,7 @@ def _over_variables(found: Comparison) -> Callable[[Path], None]:
     return lambda path: save(draw_over_variables(found.fit, rank_variables(found.fit)), path)
 
 
-@drawing.register
-def _fall(found: Diagnosis) -> Callable[[Path], None]:
-    return lambda path: save(draw_fall(found), path)
+drawing.register(Diagnosis, lambda found: lambda path: save(draw_fall(found), path))
 
 
 @drawing.register
