@@ -89,20 +89,15 @@ def read(text: str, reading: Reading) -> None:
 
 
 class _Reader:
-    """A program while it is read.
-
-    Attributes:
-        calls_by_t: Whether T itself changes the tool: nowhere in the program is an M6.
-        minutes: Time that the motion takes, from an F word in inverse time.
-        cycle: Words of a canned cycle that stay in force; None outside of one.
-        height: Z when the first of the cycles in a row was called, mm.
-    """
+    """A program while it is read."""
 
     def __init__(self, reading: Reading, calls_by_t: bool) -> None:
-        self.reading, self.modal, self.calls_by_t = reading, Modal(), calls_by_t
+        self.reading, self.modal = reading, Modal()
+        self.calls_by_t = calls_by_t  # T itself changes the tool: nowhere in the program is an M6
         self.next_tool: int | None = None
-        self.minutes = self.height = 0.0
-        self.cycle: dict[str, float] | None = None
+        self.minutes = 0.0  # that the motion takes, from an F word in inverse time
+        self.height = 0.0  # Z when the first of the cycles in a row was called, mm
+        self.cycle: dict[str, float] | None = None  # words of a canned cycle in force
 
     def take(self, line: int, words: list[tuple[str, float]], remarks: str) -> None:
         """One line: modes first, then its motion; raises BadFile."""

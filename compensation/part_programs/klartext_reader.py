@@ -47,18 +47,14 @@ def read(text: str, reading: Reading) -> None:
 
 
 class _Reader:
-    """A program while it is read.
-
-    Attributes:
-        is_calling: Whether every motion calls it (M89).
-        is_shorter_way: Whether rotary axes take the shorter way, whatever their words (M126).
-    """
+    """A program while it is read."""
 
     def __init__(self, reading: Reading) -> None:
         self.reading, self.modes = reading, Modes(reading)
         self.preset: str | None = None
         self.hole: Hole | None = None
-        self.is_calling = self.is_shorter_way = False
+        self.is_calling = False  # every motion calls it (M89)
+        self.is_shorter_way = False  # rotary axes take it, whatever their words (M126)
         self.line, self.bare = 0, ""
 
     def _refusal(self, expected: str, found: str = "") -> BadFile:

@@ -21,17 +21,12 @@ _FEED = re.compile(r"F\d+(?:\.\d+)?\Z")
 
 
 class Modes:
-    """What stays in force from block to block.
-
-    Attributes:
-        pole: Pole of circles and polar coordinates, with the shift, mm.
-        tool_feed: Feed of the last TOOL CALL, which F AUTO means.
-    """
+    """What stays in force from block to block."""
 
     def __init__(self, reading: Reading) -> None:
         self.reading = reading
-        self.pole: dict[str, float] = {}
-        self.tool_feed = 0.0
+        self.pole: dict[str, float] = {}  # of circles and polar coordinates, with the shift, mm
+        self.tool_feed = 0.0  # of the last TOOL CALL, which F AUTO means
 
     def circle(self, line: int, bare: str) -> tuple[list[int], Array]:
         """Columns of the plane of the pole, and the pole in it, mm; raises BadFile."""
@@ -48,18 +43,12 @@ class Modes:
 
 
 class Words:
-    """What the words of a block with a motion say.
-
-    Attributes:
-        kind: First word: L, LP, C, CP or CR.
-        end: Where the axes stand after it, (A,), mm and rad.
-        sweep: Angle of a circle that states a step, rad.
-    """
+    """What the words of a block with a motion say."""
 
     def __init__(self, line: int, bare: str, modes: Modes) -> None:
-        self.kind, *words = bare.split()
+        self.kind, *words = bare.split()  # L, LP, C, CP or CR first
         self.line, self.bare, self.reading, self.modes = line, bare, modes.reading, modes
-        self.end = self.reading.at.copy()
+        self.end = self.reading.at.copy()  # where the axes stand after it, (A,), mm and rad
         self.named: list[str] = []
         self.functions: list[str] = []
         self.kept: list[str] = []
@@ -69,6 +58,7 @@ class Words:
         for word in words:
             if not (self._axis(word) or self._path(word) or self._other(word)):
                 raise self.reading.refusal(line, repr(word), f"words of a block {self.kind}")
+        # angle of a circle that states a step, rad
         self.sweep = self._take_polar() if self.kind in ("LP", "CP") else None
 
     def _axis(self, word: str) -> bool:

@@ -142,26 +142,19 @@ def angle_between(start: Array, end: Array, centre: Array, positive: bool, turns
 
 
 class Paths:
-    """Where motions lead.
-
-    Attributes:
-        start: Start of every motion, (M, A), mm and rad.
-        arcs: Numbers of the motions that are arcs, with these.
-        far: Length of the way of the linear axes, (M,), mm.
-        turned: Angle of the rotary axes, (M,), degrees; the root of the sum of squares.
-        travel: What their feed refers to, (M,): `far`, or `turned` where axes turn alone, as
-            LinuxCNC counts it.
-    """
+    """Where motions lead."""
 
     def __init__(self, motions: Sequence[Motion], linear: list[int]) -> None:
-        self.start = np.array([m.start for m in motions])
+        self.start = np.array([m.start for m in motions])  # (M, A), mm and rad
         self.end = np.array([m.end for m in motions])
         self.arcs = [(k, m.arc) for k, m in enumerate(motions) if m.arc is not None]
         moved = self.end - self.start
         for k, arc in self.arcs:
             moved[k, list(arc.plane)] = self.radius(k, arc) * arc.angle, 0.0
-        self.far = np.linalg.norm(moved[:, linear], axis=1)
+        self.far = np.linalg.norm(moved[:, linear], axis=1)  # way of the linear axes, (M,), mm
+        # angle of the rotary axes, (M,), degrees; the root of the sum of squares
         self.turned = np.linalg.norm(np.delete(moved, linear, axis=1), axis=1) / DEG
+        # what their feed refers to, (M,), as LinuxCNC counts it: the angle where axes turn alone
         self.travel = np.where(self.far > 0.0, self.far, self.turned)
 
     def radius(self, k: int, arc: Arc) -> float:

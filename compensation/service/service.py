@@ -20,11 +20,7 @@ from matstd.twin.record import Touches
 
 
 class Drifts:
-    """The laws of one machine since its preset was taken.
-
-    Attributes:
-        others: Rows of all other parameters in the root of the covariance, (P',).
-    """
+    """The laws of one machine since its preset was taken."""
 
     def __init__(self, errors: MachineErrors, datum: Datum) -> None:
         """The laws where the preset is taken."""
@@ -34,6 +30,7 @@ class Drifts:
         laws = [live.law for live in self._laws]
         is_law = [effect in laws for effect in errors.effects]
         counts = [len(theta) for theta in errors.theta]
+        # rows of all other parameters in the root of the covariance, (P',)
         self.others = np.flatnonzero(~np.repeat(np.array(is_law, dtype=bool), counts))
 
     @property

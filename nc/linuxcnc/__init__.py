@@ -50,11 +50,7 @@ def net(signal: str, source: str, *sinks: str) -> str:
 
 
 class Ini:
-    """An INI file of LinuxCNC.
-
-    Attributes:
-        letters: Axes of the control, in its order.
-    """
+    """An INI file of LinuxCNC."""
 
     def __init__(self, path: Path) -> None:
         """Read it; raises BadFile."""
@@ -70,6 +66,7 @@ class Ini:
         except configparser.ParsingError as error:
             number, line = error.errors[0]
             raise BadFile(path, f"line {number}", line, "an INI file of LinuxCNC") from None
+        # axes of the control, in its order
         self.letters = self.value("TRAJ", "COORDINATES").replace(" ", "").upper()
 
     def value(self, section: str, key: str) -> str:

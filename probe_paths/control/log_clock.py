@@ -10,14 +10,10 @@ that was set."""
 
 
 class LogClock:
-    """Turns the times of day of a part into seconds since its begin.
-
-    Attributes:
-        start: Time of day of the head, s; that of the first touch where the head has none.
-    """
+    """Turns the times of day of a part into seconds since its begin."""
 
     def __init__(self, start: int | None) -> None:
-        self.start = start
+        self.start = start  # time of day of the head, s; of the first touch where it has none
         self.remarks: list[str] = []
         self._last = start
         self._elapsed = 0.0

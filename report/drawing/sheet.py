@@ -82,12 +82,7 @@ def ratio(scale: float) -> str:
 
 
 class Sheet:
-    """Lines and signs, all in millimetres of paper from the lower left corner.
-
-    Attributes:
-        ink: Points of everything drawn.
-        left, right, low, high: Edges of the drawing space, mm.
-    """
+    """Lines and signs, all in millimetres of paper from the lower left corner."""
 
     def __init__(self, paper: Paper = A2) -> None:
         self.paper = paper
@@ -97,7 +92,8 @@ class Sheet:
         self.axes.set(xlim=(0.0, wide), ylim=(0.0, high))
         self.axes.set_axis_off()
         self._depth = 1.0
-        self.ink: list[Array] = []
+        self.ink: list[Array] = []  # points of everything drawn
+        # edges of the drawing space
         self.left, self.right = _BINDING, wide - _MARGIN
         self.low, self.high = _MARGIN, high - _MARGIN
         self.box(self.left, self.low, self.right - self.left, self.high - self.low, 0.7)

@@ -25,11 +25,7 @@ HEIGHT = 760  # of the frame, pixels
 
 
 class Framed:
-    """A live view that a notebook shows; `save` writes it as a page of its own.
-
-    Attributes:
-        page: The HTML.
-    """
+    """A live view that a notebook shows; `save` writes it as a page of its own."""
 
     def __init__(self, title: str, lead: str, view: LiveView) -> None:
         """Make the page of a view; arguments as of `Page`."""

@@ -37,11 +37,6 @@ class NormalLength:
     quantile: Array  # shape (Q, N)
 
     @property
-    def sd(self) -> Array:
-        """Standard deviation of the length, (N,)."""
-        return np.sqrt(np.maximum(self.rms**2 - self.mean**2, 0.0))
-
-    @property
     def p95(self) -> Array:
         """95 % stay below this, (N,)."""
         return self.quantile[self.levels.index(0.95)]
