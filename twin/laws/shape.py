@@ -23,7 +23,8 @@ class Shape:
 
     word: str  # its name, as in `law(EZX,bump Y)`
     formula: str  # with x the variable
-    # the same as Python expressions on arrays, one per coefficient: x is the variable
+    # the same as Python expressions on arrays, one per coefficient: x is the variable; none of a
+    # curve without a formula
     code: tuple[str, ...]
     values: Values
     # names of its parameters: ending in `0` to `9` or named `phase` they are places, `zero` and
@@ -111,177 +112,113 @@ def _beyond(x: Array, low: float, high: float, length: float, size: float) -> Se
     return new * (x < low), new * (x > high)
 
 
-def _gauss(x: Array, x0: float, width: float) -> Array:
-    return np.asarray(np.exp(-(((x - x0) / width) ** 2)))
-
-
-def _after(x: Array, zero: float, w: float) -> Array:
-    """How many widths x is after zero, the edge of the values that were seen; 0 before it.
-
-    Beyond that edge an exponential would grow without a bound: another run that began 1 K colder
-    was predicted worse by 9 um.
-    """
-    return np.maximum((x - zero) / w, 0.0)
-
-
-def _turn(x: Array, period: float) -> Array:
-    return np.asarray(2.0 * np.pi * x / period)
-
-
-def _sine(x: Array, period: float) -> Sequence[Array]:
-    return np.sin(_turn(x, period)), np.cos(_turn(x, period))
-
-
-def _one(function: Callable[..., Array]) -> Values:
-    """A shape of a single coefficient."""
-
-    def values(x: Array, *places: float) -> Sequence[Array]:
-        return (function(x, *places),)
-
-    return values
+def _of(code: Sequence[str], places: Sequence[str]) -> Values:
+    """Columns by expressions: what is fitted is what the file of an effect is written with."""
+    columns = ", ".join(code).format(**{name: name for name in places})
+    return eval(f"lambda {', '.join(('x', *places))}: ({columns},)", {"np": np, "play": play})
 
 
 def _shape(
     word: str,
     formula: str,
-    code: str,
-    function: Callable[..., Array],
+    code: str | tuple[str, ...],
     *places: str,
+    coefficients: tuple[str, ...] = ("",),
+    values: Values | None = None,
     jumps: bool = False,
     remembers: bool = False,
     relaxes: bool = False,
 ) -> Shape:
+    expressions = (code,) if isinstance(code, str) else code
     return Shape(
         word=word,
         formula=formula,
-        code=(code,),
-        values=_one(function),
+        code=expressions,
+        values=values or _of(expressions, places),
         places=places,
+        coefficients=coefficients,
         jumps=jumps,
         remembers=remembers,
         relaxes=relaxes,
     )
 
 
-def _several(
-    word: str,
-    formula: str,
-    code: tuple[str, ...],
-    values: Values,
-    places: tuple[str, ...],
-    coefficients: tuple[str, ...],
-    relaxes: bool = False,
-) -> Shape:
-    """A shape of several coefficients."""
-    return Shape(
-        word=word,
-        formula=formula,
-        code=code,
-        values=values,
-        places=places,
-        coefficients=coefficients,
-        relaxes=relaxes,
-    )
+_CURVE = ("low", "high", "length", "size")
+_FREE_CURVE = (*(f"c{k}" for k in range(WAVES)), "below", "above")
 
-
+# before `zero`, the edge of the values that were seen, an exponential would grow without a bound:
+# another run that began 1 K colder was predicted worse by 9 um
 SHAPES: dict[str, Shape] = {
     shape.word: shape
     for shape in (
-        _shape("sign", "sgn(x)", "x", lambda x: x),
-        _shape("lin", "u, u = (x - zero)/unit", "(x - {zero}) / {unit}",
-               lambda x, zero, unit: (x - zero) / unit, "zero", "unit"),
-        _several("lin-from", "a u + b, u = (x - zero)/unit", ("(x - {zero}) / {unit}", "x * 0 + 1"),
-              lambda x, zero, unit: ((x - zero) / unit, np.ones(len(x))), ("zero", "unit"),
-              ("slope", "constant")),
-        _shape("quad", "u^2, u = (x - zero)/unit", "((x - {zero}) / {unit}) ** 2",
-               lambda x, zero, unit: ((x - zero) / unit) ** 2, "zero", "unit"),
-        _shape("quad-about", "((x - x0)/unit)^2", "((x - {x0}) / {unit}) ** 2",
-               lambda x, x0, unit: ((x - x0) / unit) ** 2, "x0", "unit"),
+        _shape("sign", "sgn(x)", "x"),
+        _shape("lin", "u, u = (x - zero)/unit", "(x - {zero}) / {unit}", "zero", "unit"),
+        _shape("lin-from", "a u + b, u = (x - zero)/unit",
+               ("(x - {zero}) / {unit}", "x * 0 + 1"), "zero", "unit",
+               coefficients=("slope", "constant")),
+        _shape("quad", "u^2, u = (x - zero)/unit", "((x - {zero}) / {unit}) ** 2", "zero", "unit"),
+        _shape("quad-about", "((x - x0)/unit)^2", "((x - {x0}) / {unit}) ** 2", "x0", "unit"),
         _shape("cubic", "u^3, u = (x - zero)/unit", "((x - {zero}) / {unit}) ** 3",
-               lambda x, zero, unit: ((x - zero) / unit) ** 3, "zero", "unit"),
+               "zero", "unit"),
         _shape("power", "|u|^p, u = (x - zero)/unit",
-               "np.maximum(np.abs(x - {zero}) / {unit}, 1e-9) ** {p}",
-               lambda x, zero, unit, p: np.maximum(np.abs(x - zero) / unit, 1e-9) ** p,
-               "zero", "unit", "p", relaxes=True),
-        _shape("bump", "exp(-((x - x0)/w)^2)", "np.exp(-(((x - {x0}) / {w}) ** 2))",
-               _gauss, "x0", "w"),
+               "np.maximum(np.abs(x - {zero}) / {unit}, 1e-9) ** {p}", "zero", "unit", "p",
+               relaxes=True),
+        _shape("bump", "exp(-((x - x0)/w)^2)", "np.exp(-(((x - {x0}) / {w}) ** 2))", "x0", "w"),
         _shape("bump-before", "exp(-((x - x0)/w)^2) for x < x0, else 0",
-               "np.exp(-(((x - {x0}) / {w}) ** 2)) * (x < {x0})",
-               lambda x, x0, w: _gauss(x, x0, w) * (x < x0), "x0", "w", jumps=True),
+               "np.exp(-(((x - {x0}) / {w}) ** 2)) * (x < {x0})", "x0", "w", jumps=True),
         _shape("bump-after", "exp(-((x - x0)/w)^2) for x > x0, else 0",
-               "np.exp(-(((x - {x0}) / {w}) ** 2)) * (x > {x0})",
-               lambda x, x0, w: _gauss(x, x0, w) * (x > x0), "x0", "w", jumps=True),
+               "np.exp(-(((x - {x0}) / {w}) ** 2)) * (x > {x0})", "x0", "w", jumps=True),
         _shape("pulse", "v exp(1 - v), v = max(0, x - x0)/w",
                "np.maximum(x - {x0}, 0.0) / {w} * np.exp(1.0 - np.maximum(x - {x0}, 0.0) / {w})",
-               lambda x, x0, w: _pulse(np.maximum(x - x0, 0.0) / w), "x0", "w"),
-        _shape("step", "1 for x > x0, else 0", "(x > {x0}) * 1.0",
-               lambda x, x0: (x > x0) * 1.0, "x0", jumps=True),
+               "x0", "w"),
+        _shape("step", "1 for x > x0, else 0", "(x > {x0}) * 1.0", "x0", jumps=True),
         _shape("window", "1 for x1 < x < x2, else 0", "((x > {x1}) & (x < {x2})) * 1.0",
-               lambda x, x1, x2: ((x > x1) & (x < x2)) * 1.0, "x1", "x2", jumps=True),
+               "x1", "x2", jumps=True),
         _shape("ramp", "0 before x1, 1 after x2, a line between",
-               "np.clip((x - {x1}) / ({x2} - {x1}), 0.0, 1.0)",
-               lambda x, x1, x2: np.clip((x - x1) / max(x2 - x1, 1e-9), 0.0, 1.0), "x1", "x2"),
+               "np.clip((x - {x1}) / np.maximum({x2} - {x1}, 1e-9), 0.0, 1.0)", "x1", "x2"),
         _shape("plateau", "1 between x1 and x2, gone a width w outside (half cosine)",
                "0.5 + 0.5 * np.cos(np.pi * np.clip(np.maximum({x1} - x, x - {x2}) / {w}, 0, 1))",
-               lambda x, x1, x2, w: 0.5 + 0.5 * np.cos(
-                   np.pi * np.clip(np.maximum(x1 - x, x - x2) / w, 0.0, 1.0)), "x1", "x2", "w"),
-        _shape("kink", "max(0, x - x0)/unit", "np.maximum(x - {x0}, 0.0) / {unit}",
-               lambda x, x0, unit: np.maximum(x - x0, 0.0) / unit, "x0", "unit"),
+               "x1", "x2", "w"),
+        _shape("kink", "max(0, x - x0)/unit", "np.maximum(x - {x0}, 0.0) / {unit}", "x0", "unit"),
         _shape("kink-before", "max(0, x0 - x)/unit", "np.maximum({x0} - x, 0.0) / {unit}",
-               lambda x, x0, unit: np.maximum(x0 - x, 0.0) / unit, "x0", "unit"),
-        _shape("saturation", "tanh((x - x0)/w)", "np.tanh((x - {x0}) / {w})",
-               lambda x, x0, w: np.tanh((x - x0) / w), "x0", "w"),
+               "x0", "unit"),
+        _shape("saturation", "tanh((x - x0)/w)", "np.tanh((x - {x0}) / {w})", "x0", "w"),
         _shape("dead-band", "max(0, |x - x0| - w) sgn(x - x0)/unit",
                "np.maximum(np.abs(x - {x0}) - {w}, 0.0) * np.sign(x - {x0}) / {unit}",
-               lambda x, x0, w, unit: np.maximum(np.abs(x - x0) - w, 0.0) * np.sign(x - x0) / unit,
                "x0", "w", "unit"),
         _shape("exp", "exp(-(x - zero)/w)", "np.exp(-np.maximum((x - {zero}) / {w}, 0.0))",
-               lambda x, zero, w: np.exp(-_after(x, zero, w)), "zero", "w", relaxes=True),
+               "zero", "w", relaxes=True),
         _shape("settling", "1 - exp(-(x - zero)/w)",
-               "1.0 - np.exp(-np.maximum((x - {zero}) / {w}, 0.0))",
-               lambda x, zero, w: -np.expm1(-_after(x, zero, w)), "zero", "w", relaxes=True),
-        _several("two-exp", "a exp(-(x - zero)/wa) + b exp(-(x - zero)/wb)",
-              ("np.exp(-np.maximum((x - {zero}) / {wa}, 0.0))",
-               "np.exp(-np.maximum((x - {zero}) / {wb}, 0.0))"),
-              lambda x, zero, *w: tuple(np.exp(-_after(x, zero, one)) for one in w),
-              ("zero", "wa", "wb"), ("fast", "slow"), relaxes=True),
+               "-np.expm1(-np.maximum((x - {zero}) / {w}, 0.0))", "zero", "w", relaxes=True),
+        _shape("two-exp", "a exp(-(x - zero)/wa) + b exp(-(x - zero)/wb)",
+               ("np.exp(-np.maximum((x - {zero}) / {wa}, 0.0))",
+                "np.exp(-np.maximum((x - {zero}) / {wb}, 0.0))"), "zero", "wa", "wb",
+               coefficients=("fast", "slow"), relaxes=True),
         _shape("log", "log(1 + (x - zero)/w)", "np.log1p(np.maximum(x - {zero}, 0.0) / {w})",
-               lambda x, zero, w: np.log1p(np.maximum(x - zero, 0.0) / w), "zero", "w",
-               relaxes=True),
-        _several("sine", "a sin(2 pi x/period) + b cos(2 pi x/period)",
-              ("np.sin(2 * np.pi * x / {period})", "np.cos(2 * np.pi * x / {period})"),
-              _sine, ("period",), ("sin", "cos")),
-        _several("harmonic", "a sin(k x) + b cos(k x)", ("np.sin({k} * x)", "np.cos({k} * x)"),
-              lambda x, k: (np.sin(k * x), np.cos(k * x)), ("k",), ("sin", "cos")),
+               "zero", "w", relaxes=True),
+        _shape("sine", "a sin(2 pi x/period) + b cos(2 pi x/period)",
+               ("np.sin(2 * np.pi * x / {period})", "np.cos(2 * np.pi * x / {period})"), "period",
+               coefficients=("sin", "cos")),
+        _shape("harmonic", "a sin(k x) + b cos(k x)", ("np.sin({k} * x)", "np.cos({k} * x)"), "k",
+               coefficients=("sin", "cos")),
         _shape("square", "sgn sin(2 pi x/period + phase)",
-               "np.sign(np.sin(2 * np.pi * x / {period} + {phase}))",
-               lambda x, period, phase: np.sign(np.sin(_turn(x, period) + phase)),
-               "period", "phase", jumps=True),
+               "np.sign(np.sin(2 * np.pi * x / {period} + {phase}))", "period", "phase",
+               jumps=True),
         _shape("saw", "2 frac(x/period + phase/2 pi) - 1",
-               "2.0 * np.mod(x / {period} + {phase} / (2 * np.pi), 1.0) - 1.0",
-               lambda x, period, phase: 2.0 * np.mod(x / period + phase / (2.0 * np.pi), 1.0) - 1.0,
-               "period", "phase", jumps=True),
+               "2.0 * np.mod(x / {period} + {phase} / (2 * np.pi), 1.0) - 1.0", "period", "phase",
+               jumps=True),
         _shape("half-wave", "max(0, sin(x + phase))", "np.maximum(np.sin(x + {phase}), 0.0)",
-               lambda x, phase: np.maximum(np.sin(x + phase), 0.0), "phase"),
+               "phase"),
         _shape("hysteresis", "x less a play of half width w, over unit",
-               "(x - play(x, {w})) / {unit}",
-               lambda x, w, unit: (x - play(x, w)) / unit, "w", "unit", remembers=True),
+               "(x - play(x, {w})) / {unit}", "w", "unit", remembers=True),
         _shape("play", "play of half width w that follows x, from zero, over unit",
-               "(play(x, {w}) - {zero}) / {unit}",
-               lambda x, zero, w, unit: (play(x, w) - zero) / unit, "zero", "w", "unit",
-               remembers=True),
-        _several("curve", "smooth curve without a formula, dying away beyond its domain", (),
-              _curve, ("low", "high", "length", "size"),
-              (*(f"c{k}" for k in range(WAVES)), "below", "above")),
-        _several("course", "what a driver that was not recorded does in another run", (),
-              _curve, ("low", "high", "length", "size"),
-              (*(f"c{k}" for k in range(WAVES)), "below", "above")),
-        _several("beyond", "what is not known beyond the domain of a law", (), _beyond,
-              ("low", "high", "length", "size"), ("below", "above")),
+               "(play(x, {w}) - {zero}) / {unit}", "zero", "w", "unit", remembers=True),
+        _shape("curve", "smooth curve without a formula, dying away beyond its domain", (),
+               *_CURVE, values=_curve, coefficients=_FREE_CURVE),
+        _shape("course", "what a driver that was not recorded does in another run", (),
+               *_CURVE, values=_curve, coefficients=_FREE_CURVE),
+        _shape("beyond", "what is not known beyond the domain of a law", (), *_CURVE,
+               values=_beyond, coefficients=("below", "above")),
     )
 }  # fmt: skip
 """Every shape by its word; a new one is a line here and its grid in `matstd.twin.laws.grids`."""
-
-
-def _pulse(v: Array) -> Array:
-    return np.asarray(v * np.exp(1.0 - v))
