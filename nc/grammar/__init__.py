@@ -17,6 +17,6 @@ from matstd.nc.grammar.modal import DATUMS, MODAL, Modal
 from matstd.nc.grammar.order import run_order
 
 __all__ = [
-    "COMPARISONS", "DATUMS", "MAX_DEPTH", "MODAL", "NUMBER", "SIGNED", "Block", "Flow", 
+    "COMPARISONS", "DATUMS", "MAX_DEPTH", "MODAL", "NUMBER", "SIGNED", "Block", "Flow",
     "Modal", "gcode_lines", "klartext_blocks", "label_places", "run_order", "split_words",
 ]  # fmt: skip

@@ -22,6 +22,6 @@ from matstd.twin.effects.setup_error import (
 __all__ = [
     "MARK", "MAX_OVERTONES", "SHIFT_SD", "TURN_SD", "Change", "ComponentError", "Free",
     "HigherOrder", "LocationError", "ProbeRadius", "Repeated", "body_errors", "component",
-    "further_styli", "normal_in_tool", "placing_errors", "repeat", "setup_errors", 
+    "further_styli", "normal_in_tool", "placing_errors", "repeat", "setup_errors",
     "usual_distance",
 ]  # fmt: skip
