@@ -2,9 +2,9 @@
 
 import re
 
-from matstd.twin.machine import Chain, Family, Symbol, parse_symbol
+from matstd.twin.machine import Chain, parse_symbol
 
-_NAME = re.compile(r"(geometric|location|setup|coupling)\(([^,)]+)(?:,([^)]*))?\)(?:: (\w+))?\Z")
+_NAME = re.compile(r"(geometric|location|setup)\(([^,)]+)(?:,([^)]*))?\)(?:: (\w+))?\Z")
 _SETUP = {"dx": "X", "dy": "Y", "dz": "Z", "rx": "X", "ry": "Y", "rz": "Z"}
 _SINE = re.compile(r"sinusoidal(?:,([\d.]+))?(?:@(-?[\d.]+))?\Z")
 
@@ -25,53 +25,8 @@ def in_words(name: str, chain: Chain) -> str:
     symbol = parse_symbol(first)
     if symbol is None or symbol not in chain.symbols:
         return name
-    if kind == "location":
-        return f"{_location(symbol, chain)} ({symbol.name})"
-    if kind == "geometric":
-        return f"{_shape(second or '', part)} {_component(symbol, chain)} ({symbol.name})"
-    return name
-
-
-def _direction(symbol: Symbol) -> str:
-    return "XYZ"[symbol.component % 3]
-
-
-def _location(symbol: Symbol, chain: Chain) -> str:
-    """A location or set-up error."""
-    along = _direction(symbol)
-    if symbol.family is Family.SETUP:
-        if symbol.link == "w":
-            how = "rotation about" if symbol.is_angular else "displacement along"
-            return f"set-up {how} {along}"
-        if not symbol.is_angular:
-            return "tool length" if along == "Z" else f"tool offset along {along}"
-        return f"tilt of the tool about {along}"
-    link = chain.link(symbol.link)
-    own = "XYZ"[link.own]
-    if along == own and (link.kind == "linear" or symbol.is_angular):
-        return f"zero position of {symbol.link}"
-    if link.kind == "linear":
-        return f"squareness of {symbol.link} about {along}"
-    if symbol.is_angular:
-        return f"tilt of the line of {symbol.link} about {along}"
-    return f"displacement of the line of {symbol.link} along {along}"
-
-
-def _component(symbol: Symbol, chain: Chain) -> str:
-    """A component error by its word."""
-    link, along = chain.link(symbol.link), _direction(symbol)
-    own = "XYZ"[link.own]
-    if link.kind == "linear":
-        if not symbol.is_angular:
-            if along == own:
-                return f"positioning of {link.name}"
-            return f"straightness of {link.name} in {along}"
-        return f"roll of {link.name}" if along == own else f"tilt of {link.name} about {along}"
-    if not symbol.is_angular:
-        return f"{'axial' if along == own else 'radial'} motion of {link.name} along {along}"
-    if along == own:
-        return f"angular positioning of {link.name}"
-    return f"tilt motion of {link.name} about {along}"
+    shape = f"{_shape(second or '', part)} " if kind == "geometric" else ""
+    return f"{shape}{symbol.title} ({symbol.name})"
 
 
 def _shape(shape: str, part: str | None) -> str:

@@ -156,7 +156,7 @@ def test_the_file_says_what_the_record_says(known, tmp_path):
     assert len(data["freedoms"]) == len(known.gauge.freedoms)
     assert sum(family.count for family in known.freedoms) == len(known.gauge.freedoms)
     words = [f["words"] for f in data["freedoms"]]
-    assert "set-up rotation about Z (EC0w) = - zero position of C (EC0C)" in words
+    assert "rotation of the workpiece about Z (EC0w) = - zero position of C (EC0C)" in words
     assert data["readings"]["B_deg"][0] == pytest.approx(-90.0, abs=3.0)
     for d, record in zip(data["degrees"], known.degrees, strict=True):
         assert d["largest"] == max(d["supported"], default=0)
