@@ -109,7 +109,8 @@ def test_words_are_those_worked_by_hand(case):
     name, model, _, found = case
     words = {freedom_words(f, model.chain): f for f in found.freedoms}
     # -EC0Y y in X: over a range of 200 mm each way a linear straightness of -0.2 um a urad
-    squareness = "1 µrad of squareness of Y about Z (EC0Y) = - 0.2 µm of linear straightness of Y along X (EXY)"
+    straightness = "- 0.2 µm of linear straightness of Y along X (EXY)"
+    squareness = f"1 µrad of squareness of Y about Z (EC0Y) = {straightness}"
     assert words[squareness].resolution is Resolution.NEVER
     assert words[squareness].reason is Reason.SQUARENESS
     if name in ("three axes", "table/table"):  # the ball hangs 160 mm below Z, which ends the chain
