@@ -64,7 +64,7 @@ def made(touches: int, folder: Path):
     taken = time.process_time() - start
     more = (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) / 1024
     path = folder / "report.html"
-    write_page(path, Page(title="t", heading="h", lead="l", key=(), sections=(), live=view))
+    write_page(path, Page(heading="h", lead="l", key=(), sections=(), live=view))
     print(
         f"{len(run)} touches, {len(board.switches)} effects, {len(board.estimate)} columns: "
         f"{path.stat().st_size / 1e6:.2f} MB; making it {taken:.2f} s of processor, {more:.0f} MB"

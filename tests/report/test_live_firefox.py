@@ -32,7 +32,7 @@ def test_a_run(firefox, case, tmp_path):
     found = compare(run, ordinary_model(run.touches.chain))
     view = run_view(compared_board(found), Findings("run.csv"))
     path = tmp_path / "report.html"
-    write_page(path, Page(title="t", heading="h", lead="l", key=(), sections=(), live=view))
+    write_page(path, Page(heading="h", lead="l", key=(), sections=(), live=view))
     firefox.opened(path)
     known = [found.fit.rms / UM, found.fit.test_rms / UM]
     assert firefox.run(FIGURES) == pytest.approx(known, rel=1e-12)

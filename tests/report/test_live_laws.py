@@ -92,7 +92,7 @@ def test_a_diagnosis_shows_what_it_found_and_the_law_of_what_remains(learning):
 def test_the_page_shows_curve_and_touches_and_takes_the_law_away(browser, learning, tmp_path):
     path = tmp_path / "law.html"
     view = learnt_view(learning, "run.csv")
-    write_page(path, Page(title="t", heading="h", lead="l", key=(), sections=(), live=view))
+    write_page(path, Page(heading="h", lead="l", key=(), sections=(), live=view))
     opened(browser, path)
     state = """const { plot } = livePage.residuals, { now } = livePage.shown;
         return JSON.stringify({ y: [...plot.y], curve: plot.curve && [...plot.curve.y],
@@ -153,7 +153,7 @@ def test_a_law_of_the_model_is_taken_out_of_its_prediction(predicted):
 def test_the_page_of_a_prediction_switches_its_law(browser, predicted, tmp_path):
     path = tmp_path / "predicted.html"
     view = comparison_view(predicted, "run.csv")
-    write_page(path, Page(title="t", heading="h", lead="l", key=(), sections=(), live=view))
+    write_page(path, Page(heading="h", lead="l", key=(), sections=(), live=view))
     opened(browser, path)
     figures = "const { fitted, heldOut } = livePage.shown.now; return [fitted, heldOut];"
     fit = predicted.fit

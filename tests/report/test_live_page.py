@@ -43,7 +43,7 @@ ONLY = """for (const s of livePage.board.switches) s.isOn = NAMES.includes(s.nam
 
 def written(path, view):
     """A page of nothing but a view."""
-    write_page(path, Page(title="t", heading="h", lead="l", key=(), sections=(), live=view))
+    write_page(path, Page(heading="h", lead="l", key=(), sections=(), live=view))
     return path
 
 
