@@ -9,7 +9,7 @@ standard is a `Solid` of the `Workshop`.
 from matstd.artefact.reach.bodies import Body, Clamping
 from matstd.artefact.reach.datum_ball import DatumBall
 from matstd.artefact.reach.face_of_table import hangs, standing_remarks, table_face
-from matstd.artefact.reach.mesh_cover import read_drawn_body
+from matstd.artefact.reach.mesh_cover import mesh_triangles, read_drawn_body
 from matstd.artefact.reach.probe_clearance import ProbeShape, clearance
 from matstd.artefact.reach.touchable import Mask, ProbeReach, Requests, joined
 from matstd.artefact.reach.within_reach import (
@@ -39,6 +39,7 @@ __all__ = [
     "clearance",
     "hangs",
     "joined",
+    "mesh_triangles",
     "places_on",
     "reach_of",
     "read_drawn_body",

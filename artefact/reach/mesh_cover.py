@@ -49,7 +49,7 @@ def read_drawn_body(path: str | Path, most: int = MOST_BOXES) -> DrawnBody:
     """
     import trimesh
 
-    whole = _triangles(Path(path))
+    whole = mesh_triangles(Path(path))
     corners, back = np.unique(whole.reshape(-1, 3), axis=0, return_inverse=True)
     triangles = back.reshape(-1, 3)
     mesh = trimesh.Trimesh(corners, triangles, process=False)
@@ -79,19 +79,19 @@ def _cover(triangles: Array, most: int) -> list[Array]:
     return [*boxes, *done]
 
 
-def _triangles(path: Path) -> Array:
-    """Corners of all triangles of a mesh file, (T, 3, 3), mm."""
+def mesh_triangles(path: Path, expected: str = "an STL file") -> Array:
+    """Corners of all triangles of a mesh file, (T, 3, 3), mm; raises BadFile."""
     import trimesh
 
     try:
-        mesh = trimesh.load(path, force="mesh")
+        mesh = trimesh.load(path, force="mesh", process=False)
         triangles = np.array(mesh.triangles, dtype=float).reshape(-1, 3, 3)
     except OSError as error:
-        raise BadFile(path, "file", error.strerror or "nothing", "an STL file") from None
+        raise BadFile(path, "file", error.strerror or "nothing", expected) from None
     except Exception as error:  # trimesh raises whatever its parsers stumble over
-        raise BadFile(path, "file", f"no mesh ({error})", "an STL file") from None
+        raise BadFile(path, "file", f"no mesh ({error})", expected) from None
     if not len(triangles) or not np.all(np.isfinite(triangles)):
-        raise BadFile(path, "file", f"{len(triangles)} triangles", "an STL file with a body in it")
+        raise BadFile(path, "file", f"{len(triangles)} triangles", f"{expected} with a body in it")
     return triangles
 
 

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
+from matstd.artefact.reach import mesh_triangles
 from matstd.cad_out.kernel import step_triangles
 from matstd.report.machine.solids import FOUNDATION, Drawn
 from matstd.report.style import series
@@ -44,32 +45,20 @@ def drawing_triangles(path: Path) -> Array:
         raise BadFile(path, "name", path.suffix or "no ending", expected)
     if not path.is_file():
         raise BadFile(path, "file", "nothing", "a drawing of the body")
-    if kind in _STEPS:
+    if kind in _MESHES:
+        corners = mesh_triangles(path, "a mesh")
+    else:
         try:
             corners = step_triangles(path)
         except NotBuildable as error:
             raise BadFile(path, "file", f"no body ({error})", "a STEP file with a body") from None
-    else:
-        corners = _mesh(path)
-    if not len(corners) or not np.all(np.isfinite(corners)):
-        raise BadFile(path, "file", f"{len(corners)} triangles", "a body with finite corners")
+        if not len(corners):
+            raise BadFile(path, "file", "no body", "a STEP file with a body")
     far = float(np.abs(corners).max())
     if far > FARTHEST:
         found = f"a corner {far:.6g} mm from the origin"
         raise BadFile(path, "file", found, f"at most {FARTHEST:g} mm; is the file in mm?")
     return corners
-
-
-def _mesh(path: Path) -> Array:
-    import trimesh
-
-    try:
-        mesh = trimesh.load(path, force="mesh", process=False)
-        return np.array(mesh.triangles, dtype=np.float64).reshape(-1, 3, 3)
-    except OSError as error:
-        raise BadFile(path, "file", error.strerror or "nothing", "a mesh") from None
-    except Exception as error:  # trimesh raises whatever its parsers stumble over
-        raise BadFile(path, "file", f"no mesh ({error})", "a mesh") from None
 
 
 def thinned(triangles: Array, most: int = MAX_TRIANGLES) -> Array:

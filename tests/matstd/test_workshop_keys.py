@@ -92,8 +92,8 @@ def test_a_body_on_an_axis_of_the_tool_is_refused(tmp_path):
 def test_a_mesh_is_read_once(tmp_path, monkeypatch):
     """However often the workshop is asked for, and wherever its bodies are tried."""
     trimesh.creation.box((40.0, 25.0, 35.0)).export(tmp_path / "clamp.stl")
-    read, usual = [], mesh_cover._triangles
-    monkeypatch.setattr(mesh_cover, "_triangles", lambda path: read.append(path) or usual(path))
+    read, usual = [], mesh_cover.mesh_triangles
+    monkeypatch.setattr(mesh_cover, "mesh_triangles", lambda path: read.append(path) or usual(path))
     stl = 'stl = "clamp.stl"'
     brief = project(tmp_path, "sides_mm = [40.0, 25.0]\nheight_mm = 35.0", stl)
     with pytest.raises(BadFile, match=r"CLAMP1 on the table: it reaches 17\.5 mm into it"):
