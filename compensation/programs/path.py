@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from matstd.compensation.field import MachineErrors, correction
 from matstd.compensation.part_programs import Paths, Program, forces
 from matstd.twin.frames import Array
-from matstd.twin.record import IntArray, Touches
+from matstd.twin.record import IntArray, Touches, last_signs
 from matstd.twin.units import DEG, MINUTE
 
 RAPID = 10_000.0
@@ -118,10 +118,7 @@ class ProgramPath:
     def _last_moves(self) -> Array:
         """Sign of the last motion of every axis before each motion begins, (M, A)."""
         at_end = self._moving(np.arange(len(self.motions)), np.ones(len(self.motions)))
-        out = np.zeros_like(at_end)
-        for k in range(1, len(out)):
-            out[k] = np.where(at_end[k - 1] != 0.0, at_end[k - 1], out[k - 1])
-        return out
+        return np.vstack([np.zeros_like(at_end[:1]), last_signs(at_end[:-1])])
 
     def _approach(self, which: IntArray, share: Array) -> Array:
         moving = self._moving(which, share)

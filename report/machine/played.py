@@ -11,7 +11,7 @@ from matstd.compensation.programs import passed
 from matstd.probe_paths.control import Clock, Move, ProbeStep, ReadProgram, step_times
 from matstd.twin.frames import Array, unit
 from matstd.twin.machine import Chain, linear_directions
-from matstd.twin.record import IntArray
+from matstd.twin.record import IntArray, last_signs
 from matstd.twin.units import DEG
 
 MAX_POSITIONS = 40_000
@@ -165,9 +165,7 @@ def last_moves(q: Array) -> IntArray:
         array([ 0,  1,  1, -1])
     """
     step = np.diff(q, axis=0, prepend=q[:1])
-    signs = np.where(np.abs(step) > _STILL, np.sign(step), 0.0).astype(np.int64)
-    moved = np.maximum.accumulate(np.where(signs != 0, np.arange(len(q))[:, None], 0), axis=0)
-    return np.take_along_axis(signs, moved, axis=0)
+    return last_signs(np.where(np.abs(step) > _STILL, np.sign(step), 0.0)).astype(np.int64)
 
 
 def _between(

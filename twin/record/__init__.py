@@ -20,12 +20,13 @@ from matstd.twin.record.touches import (
     at_poses,
     computed_deviation,
     implied_approach,
+    last_signs,
     linear_approach,
 )
 
 __all__ = [
     "BODY", "U_SHARE", "Body", "Instrument", "IntArray", "Labels", "Moved", "Run", "Setup",
     "StatedBody", "Touches", "aligned", "at_poses", "computed_deviation", "implied_approach",
-    "joined", "linear_approach", "rigid_motion", "stacked", "turn_of", "with_body",
+    "joined", "last_signs", "linear_approach", "rigid_motion", "stacked", "turn_of", "with_body",
     "with_commanded", "without_copies",
 ]  # fmt: skip

@@ -308,6 +308,12 @@ def implied_approach(touches: Touches) -> Array:
     return linear_approach(touches.chain, touches.q, touches.normal_table)
 
 
+def last_signs(moves: Array) -> Array:
+    """The last sign of every column up to every row, (N, A): zeros keep the sign before them."""
+    moved = np.where(moves != 0.0, np.arange(len(moves))[:, None], 0)
+    return np.take_along_axis(moves, np.maximum.accumulate(moved, axis=0), axis=0)
+
+
 def motion(q: Array, time: Array) -> Array:
     """Signs of the last motion of every axis in a log that was read on the way, (N, A).
 
@@ -319,9 +325,7 @@ def motion(q: Array, time: Array) -> Array:
         array([ 1.,  1.,  1.,  0., -1.])
     """
     order = np.argsort(time, kind="stable")
-    step = np.sign(np.diff(q[order], axis=0, prepend=q[order][:1]))
-    moved = np.maximum.accumulate(np.where(step != 0.0, np.arange(len(q))[:, None], 0), axis=0)
-    signs = np.take_along_axis(step, moved, axis=0)
+    signs = last_signs(np.sign(np.diff(q[order], axis=0, prepend=q[order][:1])))
     signs[0] = signs[min(1, len(q) - 1)]
     signs[:-1][signs[:-1] * signs[1:] < 0.0] = 0.0
     out = np.empty_like(signs)
