@@ -26,27 +26,21 @@ _MAX_LOG10 = 12.0  # odds are not written with more zeros: beyond, their number 
 
 _UNITS = (("_mm", "mm"), ("_deg", "deg"), ("_degC", "°C"), ("_N", "N"), ("_rpm", "1/min"))
 
-_SPELT = {
-    "um_per_m_K": "µm/(m K)",
-    "urad_per_K": "µrad/K",
-    "um_per_K": "µm/K",
-    "um_per_h": "µm/h",
-    "urad_per_h": "µrad/h",
-    "um_per_N": "µm/N",
-    "urad_per_mm": "µrad/mm",
-    "urad_per_m": "µrad/m",
-    "urad_per_N": "µrad/N",
-    "um_per_m": "µm/m",
-    "urad": "µrad",
-    "um": "µm",
-    "deg": "°",
-}
-"""Units whose spelling in files differs from that in reports."""
+_SPELT = {"urad": "µrad", "um": "µm", "deg": "°"}  # units that reports write otherwise than files
 
 
 def unit_words(unit: str) -> str:
-    """A unit as the reports write it: `um_per_K` of the files is µm/K."""
-    return _SPELT.get(unit, unit)
+    """A unit of the files as the reports write it.
+
+    Example:
+        >>> unit_words("um_per_K"), unit_words("um_per_m_K"), unit_words("deg"), unit_words("min")
+        ('µm/K', 'µm/(m K)', '°', 'min')
+    """
+    above, _, below = unit.partition("_per_")
+    words = _SPELT.get(above, above)
+    if not below:
+        return words
+    return f"{words}/({below.replace('_', ' ')})" if "_" in below else f"{words}/{below}"
 
 
 def digits(value: float | None, significant: int = 3) -> str:

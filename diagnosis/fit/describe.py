@@ -28,7 +28,6 @@ SINE_PREFIX = "sine_"
 """Begins the amplitude of a sine of a period, before its number."""
 
 _HEADS = {"mm": ("um", UM), "rad": ("urad", URAD), "s": ("ms", 1e-3)}
-_TAILS = {"K": "_per_K", "h": "_per_h", "N": "_per_N"}
 
 
 class Role(Enum):
@@ -70,7 +69,7 @@ def file_unit(unit: str) -> tuple[str, float]:
         return "um_per_m_K", 1e-6
     head, _, tail = unit.partition("/")
     label, factor = _HEADS.get(head, (head, 1.0))
-    return label + (_TAILS.get(tail, f"_per_{tail}") if tail else ""), factor
+    return f"{label}_per_{tail}" if tail else label, factor
 
 
 def inner_unit(inner: Inner) -> tuple[str, float]:
