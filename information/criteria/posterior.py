@@ -59,11 +59,6 @@ class Posterior:
         return np.asarray(np.sqrt(np.diag(self.covariance)))
 
     @cached_property
-    def log_det(self) -> float:
-        """Natural logarithm of the determinant of the information (Bayesian D-criterion)."""
-        return float(2.0 * np.log(np.diag(self._factor)).sum())
-
-    @cached_property
     def spectrum(self) -> tuple[Array, Array]:
         """Singular values of W, largest first, (P,), and their directions as columns, (P, P).
 
