@@ -17,7 +17,7 @@ from matstd.importers.points.point_list import PointList, joined_points, misplac
 from matstd.importers.points.reading import Meaning, read_points
 from matstd.importers.sheets import Sheet
 from matstd.twin.frames import Array
-from matstd.twin.machine import Axis, Chain, inverse_linear, linear_directions, make_chain, tip
+from matstd.twin.machine import Axis, Chain, inverse_linear, linear_motion, make_chain, tip
 from matstd.twin.record import Instrument, Run, Setup, at_poses
 
 MIN_TRAVEL = 20.0
@@ -142,10 +142,7 @@ def _readings(chain: Chain, place: Array) -> Array:
     if len(chain.linear_axes) == 3:
         return inverse_linear(chain, place, q, 0.0)
     # fewer axes reach places in their own directions only; the rest belongs to the set-up
-    columns = chain.linear_columns
-    back = np.linalg.pinv(linear_directions(chain, q))
-    q[:, columns] = np.einsum("nmi,ni->nm", back, place - tip(chain, q, 0.0))
-    return q
+    return linear_motion(chain, q, place - tip(chain, q, 0.0))
 
 
 def _approach(points: PointList, chain: Chain) -> Array:

@@ -17,8 +17,8 @@ from matstd.artefact.feasibility import Feasibility, check_seat, feasibility, st
 from matstd.twin.compute import Progress, silent
 from matstd.twin.errors import BadFile, DesignError, NotBuildable, NotReachable
 from matstd.twin.files import read_machine
-from matstd.twin.frames import Array, fixed_xyz
-from matstd.twin.machine import Chain, table_to_tool
+from matstd.twin.frames import fixed_xyz
+from matstd.twin.machine import Chain, linear_motion, tip
 from matstd.twin.record import Setup
 from matstd.twin.units import DEG
 
@@ -271,30 +271,17 @@ def workspace(
     corners = corners @ fixed_xyz(np.array(turn) * DEG).T
     rotary = [a for a in chain.programmed_axes if chain.link(a).kind == "rotary"]
     ends = {a: np.clip(chain.link(a).range, -180.0 * DEG, 180.0 * DEG) for a in rotary}
-    poses = list(product(*(np.linspace(low, high, 7) for low, high in (ends[a] for a in rotary))))
-    linear = list(chain.linear_axes)
-    turned = [dict(zip(rotary, pose, strict=True)) for pose in poses]
-    found = np.concatenate([_readings(chain, linear, at, corners, length) for at in turned])
+    poses = list(product(*(np.linspace(*ends[a], 7) for a in rotary)))
+    q = np.zeros((len(poses) * len(corners), len(chain.axes)))
+    q[:, [chain.axis_index(a) for a in rotary]] = np.repeat(poses, len(corners), axis=0)
+    points = np.tile(corners, (len(poses), 1))
+    found = linear_motion(chain, q, points - tip(chain, q, length))
     for name in chain.programmed_axes:
         low, high = chain.link(name).range
         if name in rotary:
             low, high = ends[name] / DEG
         else:
-            inside = np.clip(found[:, linear.index(name)], low, high)
+            inside = np.clip(found[:, chain.axis_index(name)], low, high)
             low, high = inside.min(), inside.max()
         # + 0.0: no minus before a zero in the file
         yield name, [float(np.ceil(low - ROUNDING)) + 0.0, float(np.floor(high + ROUNDING)) + 0.0]
-
-
-def _readings(
-    chain: Chain, linear: list[str], rotary: Mapping[str, float], points: Array, length: float
-) -> Array:
-    """Linear readings, (N, L), mm, that bring the tool point to points of the table frame."""
-    q = np.zeros((1 + len(linear), len(chain.axes)))
-    for name, angle in rotary.items():
-        q[:, chain.axis_index(name)] = angle
-    for k, name in enumerate(linear):
-        q[1 + k, chain.axis_index(name)] = 1.0
-    tips = table_to_tool(chain, q) @ np.array([0.0, 0.0, -length, 1.0])
-    slopes = (tips[1:] - tips[0])[:, :3].T
-    return np.asarray(np.linalg.lstsq(slopes, (points - tips[0, :3]).T, rcond=None)[0].T)

@@ -23,7 +23,7 @@ import numpy as np
 from matstd.artefact.body import FreeformPatch, Standard
 from matstd.twin.errors import BadFile
 from matstd.twin.frames import Array, apply, inverse, pose, rotation
-from matstd.twin.machine import Chain, linear_directions, tip
+from matstd.twin.machine import Chain, linear_motion, tip
 from matstd.twin.numbers import rms
 from matstd.twin.record import (
     IntArray,
@@ -274,12 +274,8 @@ def _touches(
 
 def _with_deviations(touches: Touches, wanted: Array) -> Touches:
     """Touches whose readings say some deviations (N,): means, and the deflection of the stylus."""
-    chain = touches.chain
     shift = (wanted - computed_deviation(touches))[:, None] * touches.normal_table
-    back = np.linalg.pinv(linear_directions(chain, touches.q))
-    q = touches.q.copy()
-    q[:, chain.linear_columns] += np.einsum("nmi,ni->nm", back, shift)
-    return replace(touches, q=q)
+    return replace(touches, q=touches.q + linear_motion(touches.chain, touches.q, shift))
 
 
 def _stretches(line: IntArray, place: Array) -> list[IntArray]:

@@ -9,7 +9,7 @@ from matstd.artefact.brief import Brief
 from matstd.diagnosis.accuracy import prove, seen_from
 from matstd.diagnosis.fit import Fit
 from matstd.twin.frames import Array
-from matstd.twin.machine import linear_directions
+from matstd.twin.machine import linear_motion
 from matstd.twin.model import Effect
 from matstd.twin.record import Setup, at_poses
 from matstd.twin.sampling import grid_points
@@ -65,8 +65,7 @@ def error_field(
         to_table = believed.T_table_artefact[:3, :3]
         outside = ~workspace.in_volume(q)
         for vectors, into in ((proof.before, before), (proof.after, after)):
-            in_table = (vectors @ to_table.T)[..., None]
-            along = np.array(np.linalg.solve(linear_directions(chain, q), in_table), dtype=float)
+            along = linear_motion(chain, q, vectors @ to_table.T)[:, chain.linear_columns]
             along[outside] = np.nan
             into.append(along.reshape(*COUNTS, 3))
         rotary.append(stands)

@@ -13,6 +13,7 @@ from matstd.twin.machine.kinematics import (
     exact_tip,
     inverse_linear,
     linear_directions,
+    linear_motion,
     reach,
     table_to_tool,
     tip,
@@ -33,6 +34,7 @@ from matstd.twin.machine.symbols import LETTERS, Family, Symbol, parse_symbol
 __all__ = [
     "DEFAULT_RANGES", "LETTERS", "SHAPES", "Axis", "Chain", "Contribution", "Family", "Link",
     "Ranges", "Reach", "ShapeName", "Symbol", "Where", "checked_readings", "error_class",
-    "exact_tip", "inverse_linear", "linear_directions", "make_chain", "parse_symbol", "reach",
-    "shape", "sine_argument", "table_to_tool", "tip", "tool_and_directions",
+    "exact_tip", "inverse_linear", "linear_directions", "linear_motion", "make_chain",
+    "parse_symbol", "reach", "shape", "sine_argument", "table_to_tool", "tip",
+    "tool_and_directions",
 ]  # fmt: skip

@@ -212,6 +212,17 @@ def _directions(chain: Chain, T_machine_carrier: Array, T_machine_table: Array) 
     return np.stack(columns, axis=-1) if columns else np.zeros((len(T_machine_table), 3, 0))
 
 
+def linear_motion(chain: Chain, q: Array, way: Array) -> Array:
+    """Motion of the linear axes that moves the tip by given ways of the table frame, (N, A).
+
+    Least squares, as a machine may have fewer than three of them; zero in columns of other axes.
+    """
+    out = np.zeros(q.shape)
+    across = np.linalg.pinv(linear_directions(chain, q))
+    out[:, chain.linear_columns] = np.einsum("nmi,ni->nm", across, way)
+    return out
+
+
 def inverse_linear(chain: Chain, target: Array, q: Array, length: Array | float) -> Array:
     """Readings of the linear axes that bring the tip to a point at given rotary readings, (N, A).
 

@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from matstd.twin.frames import Array
-from matstd.twin.machine import linear_directions
+from matstd.twin.machine import linear_motion
 from matstd.twin.record.instrument import Instrument
 from matstd.twin.record.run import Run
 from matstd.twin.record.touches import Touches, computed_deviation
@@ -46,12 +46,10 @@ def with_commanded(run: Run) -> Run:
     residual = np.where(holds, _less_setups(touches, implied), 0.0)
     if not residual.any():
         return run
-    linear = touches.chain.linear_columns
-    directions = linear_directions(touches.chain, touches.q)  # (N, 3, axes)
-    step = np.linalg.pinv(directions) @ touches.normal_table[:, :, None]
-    moved = step[:, :, 0] * residual[:, None]
+    moved = linear_motion(touches.chain, touches.q, residual[:, None] * touches.normal_table)
     commanded = touches.q.copy()
-    for column, by in zip(linear, moved.T, strict=True):
+    for column in touches.chain.linear_columns:
+        by = moved[:, column]
         usual = float(np.median(np.abs(by)))
         at = touches.q[:, column] - by
         is_near = usual < LARGEST_DEVIATION and np.ptp(at) < MIN_RANGE_RATIO * usual

@@ -15,7 +15,7 @@ from matstd.twin.machine import (
     Reach,
     Where,
     checked_readings,
-    linear_directions,
+    linear_motion,
     reach,
     table_to_tool,
     tip,
@@ -289,13 +289,8 @@ def linear_approach(chain: Chain, q: Array, normal_table: Array) -> Array:
 
     With the outward normals in the table frame, (N, 3); 0 in the columns of other axes.
     """
-    out = np.zeros(q.shape)
-    columns = chain.linear_columns
-    D = linear_directions(chain, q)
-    # least squares, because an instrument may stand on a machine with fewer than three linear axes
-    velocity = -np.einsum("nmi,ni->nm", np.linalg.pinv(D), normal_table)
-    out[:, columns] = np.where(np.abs(velocity) > 1e-9, np.sign(velocity), 0.0)
-    return out
+    velocity = linear_motion(chain, q, -normal_table)
+    return np.where(np.abs(velocity) > 1e-9, np.sign(velocity), 0.0)
 
 
 def implied_approach(touches: Touches) -> Array:
