@@ -60,11 +60,18 @@ def truth(name: str) -> dict:
 # a warm-up that the library knows
 
 
-@pytest.fixture(scope="module")
-def warm_up(tmp_path_factory):
+@pytest.fixture(
+    scope="module",
+    params=[
+        pytest.param(["--only", "thermal-lag", "backlash"], id="narrow"),
+        pytest.param([], id="the library", marks=pytest.mark.slow),
+    ],
+)
+def warm_up(request, tmp_path_factory):
     """Words and result of the command, and the model with what it found."""
     out = tmp_path_factory.mktemp("warm_up") / "out"
-    words = matstd("diagnose", "warm_up.csv", "--auto", "--no-report", "--no-learn", "-o", out)
+    quiet = ["--auto", "--no-report", "--no-learn", *request.param]
+    words = matstd("diagnose", "warm_up.csv", *quiet, "-o", out)
     return words, result(out), out / "model.toml"
 
 

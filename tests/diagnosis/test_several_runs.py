@@ -49,11 +49,12 @@ def knocked():
 
 @pytest.fixture(scope="module")
 def diagnosed(knocked):
-    return diagnose(joined(knocked))
+    runs = joined(knocked)
+    return diagnose(runs, candidates=few(runs))
 
 
 def few(run):
-    """Rivals of a change of a constant; `diagnosed` has the whole library."""
+    """Rivals of a change of a constant; the slow tests have the whole library."""
     return proposals(run.touches, ("backlash", "location", "thermal-static"))
 
 
