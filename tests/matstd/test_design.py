@@ -58,7 +58,7 @@ def small_project(folder: Path, machines: int = 1, touches: int = 120, poses: in
         ("poses = 2000", "poses = 300"),
         ("draws = 2000", "draws = 300"),
         ("patches = 6 ", "patches = 3 "),
-        ("# balls = 13", "balls = 5"),
+        ("# balls = 13", "balls = 4"),
         ("# proof_touches = 110", "proof_touches = 40"),
         ("touches = 480", f"touches = {touches}"),
         ("poses = 30 ", f"poses = {poses} "),
@@ -93,6 +93,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
         patch.setattr(comparison, "COUNTS", (4,))
         bodies = comparison.rivals
         patch.setattr(comparison, "rivals", lambda *of: dict([*bodies(*of).items()][:1]))
+        patch.setattr("matstd.cad_out.verify.export.mesh_chord", lambda _: 0.05)
         render_alone(patch, "drawing")  # `report/test_*` render the others
         patch.setattr(study_run, "draw_maps", lambda *_: [])
         patch.setattr(design_page, "draw_study_volumes", lambda *_: [])
@@ -399,7 +400,7 @@ def test_what_a_standard_is_chosen_for(tmp_path: Path) -> None:
     path = small_project(tmp_path)
     text = path.read_text()
     assert read_project(path).options == PlacementOptions(
-        name="FFS-600U", serial="001", patches=3, balls=5, choice=TouchOptions(120, 10, 40)
+        name="FFS-600U", serial="001", patches=3, balls=4, choice=TouchOptions(120, 10, 40)
     )
     plain = re.sub(
         r"(?m)^(criterion|potential|robust_machines|robust_share|poses = 10).*\n", "", text
