@@ -94,7 +94,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
         bodies = comparison.rivals
         patch.setattr(comparison, "rivals", lambda *of: dict([*bodies(*of).items()][:1]))
         patch.setattr("matstd.cad_out.verify.export.mesh_chord", lambda _: 0.05)
-        render_alone(patch, "drawing")  # `report/test_*` render the others
+        render_alone(patch)  # `report/test_*` render them; the drawing is no PNG
         patch.setattr(study_run, "draw_maps", lambda *_: [])
         patch.setattr(design_page, "draw_study_volumes", lambda *_: [])
         patch.setattr(design_page, "touch_curve", partial(touch_curve, counts=(50, 150)))
