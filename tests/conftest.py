@@ -111,11 +111,10 @@ def _as_in_a_test():
 
     A slow machine prints its progress every ten seconds: nothing a test can count on. The workers
     share the cores: nothing is done in a further process, where what a test has patched would not
-    be. Pictures have a quarter of the dots, which is a third of their time. Regions where a model
-    fails are grown from a fifth of their starts, which were a third of the time of a diagnosis;
-    `diagnosis/test_regions` has them all. The Monte Carlo counts in numpy: its loops take numba
-    half a minute to compile, and `compiled_loops` brings them back for the tests that compare the
-    two.
+    be. Pictures have a fifth of the dots. Regions where a model fails are grown from a fifth of
+    their starts, which were a third of the time of a diagnosis; `diagnosis/test_regions` has them
+    all. The Monte Carlo counts in numpy: its loops take numba half a minute to compile, and
+    `compiled_loops` brings them back for the tests that compare the two.
     """
     from matstd.sensitivity.montecarlo import lengths
 

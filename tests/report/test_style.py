@@ -3,8 +3,10 @@
 import re
 
 import numpy as np
+import pytest
+from figures import DOT
 
-from matstd.report.style import robust_limit, series
+from matstd.report.style import figure, robust_limit, save, series
 
 
 def test_no_colour_comes_twice() -> None:
@@ -21,3 +23,10 @@ def test_a_scale_that_few_values_do_not_decide() -> None:
     values = np.concatenate([np.linspace(-1.0, 1.0, 999), [500.0]])
     assert robust_limit(values) < 1.01
     assert robust_limit(np.zeros(3)) == 1.0
+
+
+@pytest.mark.usefixtures("unrendered")
+def test_an_unrendered_figure_is_a_dot(tmp_path) -> None:
+    """Were it rendered, tests of pages would take twice as long and fail nowhere."""
+    save(figure(1.0), tmp_path / "picture.png")
+    assert (tmp_path / "picture.png").read_bytes() == DOT
