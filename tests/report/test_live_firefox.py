@@ -10,7 +10,7 @@ from matstd.report.run_view import Findings, run_view
 from matstd.twin.library.ordinary import ordinary_model
 from matstd.twin.units import UM
 
-pytestmark = pytest.mark.browser
+pytestmark = [pytest.mark.browser, pytest.mark.slow]  # Chromium is driven in every run
 
 FIGURES = "const { fitted, heldOut } = livePage.shown.now; return [fitted, heldOut]"
 POINTED = """const { view, dots } = livePage.touched, t = livePage.data.touches;

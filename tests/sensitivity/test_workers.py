@@ -119,7 +119,7 @@ def test_executors_give_the_same_bits(study):
     local = run(None)
     with ThreadPoolExecutor(2) as threads:
         same(run(threads), local)
-    with ProcessPoolExecutor(2, get_context("spawn")) as processes:
+    with ProcessPoolExecutor(1, get_context("spawn")) as processes:
         same(run(processes), local)
 
 
