@@ -30,38 +30,21 @@ pytest_plugins = ["bench", "browser", "firefox", "machines", "standards", "runs"
 LONGEST = (
     "matstd/test_design.py",
     "test_door.py",
-    "diagnosis/test_other_run.py",
     "diagnosis/test_laws.py",
-    "cad_out/test_export.py",
+    "report/test_live_page.py",
     "diagnosis/test_hidden_effects.py",
-    "report/test_diagnosis_pictures.py",
     "diagnosis/test_several_runs.py",
+    "cad_out/test_assembly.py",
     "diagnosis/test_files_and_commands.py",
-    "test_examples_diagnosis.py",
-    "test_examples.py",
-    "diagnosis/test_reduced.py",
     "diagnosis/test_reported_set.py",
     "probe_paths/test_simulate.py",
-    "test_examples_runs.py",
-    "sensitivity/test_study.py",
-    "matstd/test_design_machines.py",
     "matstd/test_measure_commands.py",
-    "matstd/test_seat.py",
-    "test_formats.py",
-    "diagnosis/test_rivals.py",
-    "diagnosis/test_verdict_parts.py",
-    "diagnosis/test_serial_arm.py",
-    "diagnosis/test_periods.py",
-    "diagnosis/test_edges.py",
-    "diagnosis/test_prediction.py",
+    "diagnosis/test_other_run.py",
     "report/test_scenes.py",
-    "report/test_live_page.py",
-    "report/test_live_laws.py",
-    "matstd/test_reach.py",
-    "artefact/test_room.py",
+    "test_examples_diagnosis.py",
 )
-"""Files of more than five seconds: begun first, so that no worker waits for one of them at the end;
-left to itself, xdist begins with the files of most tests."""
+"""Files of more than seven seconds: begun first, so that no worker waits for one at the end; left
+to itself, xdist begins with the files of most tests."""
 
 
 TOGETHER = (
