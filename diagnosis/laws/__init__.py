@@ -18,12 +18,8 @@ from matstd.diagnosis.laws.estimates import (
     places,
     second_run,
 )
-from matstd.diagnosis.laws.learn import (
-    Learning,
-    LearntLaw,
-    Rival,
-    learn_laws,
-)
+from matstd.diagnosis.laws.learn import learn_laws
+from matstd.diagnosis.laws.learnt import Learning, LearntLaw, Rival
 from matstd.diagnosis.laws.policy import POLICY, LawPolicy
 from matstd.diagnosis.laws.remainder import learn_remainder
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from matstd.diagnosis.fit import Fit, fit_run
-from matstd.diagnosis.laws.learn import Learning
+from matstd.diagnosis.laws.learnt import Learning
 from matstd.twin.frames import Array
 from matstd.twin.laws import Driver, Law
 from matstd.twin.model import Model, columns

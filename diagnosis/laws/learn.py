@@ -1,14 +1,13 @@
-"""Laws that a model lacks, learnt from a run one after the other, and what they predict."""
+"""Laws that a model lacks, learnt from a run one after the other."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.laws.acceptance import (
-    HeldOut,
     Refusal,
     held_out,
     holds_between,
@@ -18,20 +17,26 @@ from matstd.diagnosis.laws.acceptance import (
     stands_beside_memory,
 )
 from matstd.diagnosis.laws.beginning import Beginning, log_odds
-from matstd.diagnosis.laws.library import LibraryEffect, nearest_of_library
+from matstd.diagnosis.laws.learnt import Learning, LearntLaw, Rival
+from matstd.diagnosis.laws.library import nearest_of_library
 from matstd.diagnosis.laws.policy import POLICY, LawPolicy
 from matstd.diagnosis.laws.search import Ground, Searched, search_law
 from matstd.diagnosis.laws.space import Space
+from matstd.diagnosis.regression import BoolArray, GrossErrors
 from matstd.twin.compute import one_blas_thread
-from matstd.twin.frames import Array
 from matstd.twin.laws import Carrier, Law
-from matstd.twin.library import owner_of
-from matstd.twin.model import Effect, Model, columns
+from matstd.twin.model import Model
 from matstd.twin.record import Run, Touches
 
 MIN_TOUCHES_OF_LAW = 30
 """Fewer touches than this leave no law that could be distinguished from another."""
 
+MIN_EXPLAINED = 4
+"""So many gross errors, and half of them, must follow a law that is learnt from them: a step beyond
+which 8 of 780 touches are stands out like 8 chips. Accidents have no law in common."""
+
+FAR_GROSS = 2.0
+"""Gross errors so many times as large as the middle one are not counted among those."""
 
 STAND_IN = ("level", "time")
 """Natures of variables that may stand for a driver that was not recorded: what was commanded, a
@@ -39,150 +44,6 @@ reading or a direction, does not."""
 
 PROPORTIONAL = ("lin", "lin-from")
 """Shapes that are taken for what they say, since bodies expand in proportion to a temperature."""
-
-
-@dataclass(frozen=True, eq=False)
-class Rival:
-    """A law beside the chosen one."""
-
-    law: Law
-    log_odds: float  # of the chosen law against it
-
-
-@dataclass(frozen=True, eq=False)
-class LearntLaw:
-    """One law with what speaks for it."""
-
-    law: Law  # with the parameters of its shapes
-    alike: tuple[Carrier, ...]  # carriers that do the same at every touch of this run
-    score: float  # log evidence that it gains, all charges taken off
-    curve: float  # that of the best law without a formula
-    drift: float  # that of a driver which was not recorded but is smooth in time
-    # other laws, the nearest first; those within the policy's odds are its class
-    rivals: tuple[Rival, ...]
-    # the effect of the library that explains most of the same; None without any
-    library: LibraryEffect | None = None
-    memory: float = -np.inf  # log evidence of noise that remembers in the place of the law
-
-    @property
-    def is_in_library(self) -> bool:
-        """Whether an effect with a cause explains as much."""
-        return self.library is not None and self.library.score > self.score
-
-    @property
-    def travels(self) -> bool:
-        """Whether it belongs to the machine and not to the run that it was learnt from."""
-        return self.law.belongs_to == "machine"
-
-    @property
-    def run_odds(self) -> float:
-        """Log odds against the nearest of all laws that belong to the run alone."""
-        near = (r.log_odds for r in self.rivals if r.law.belongs_to == "run")
-        return min(self.score - self.drift, *near, np.inf)
-
-    @property
-    def second_choice(self) -> Rival | None:
-        """The nearest law of another carrier or other variables."""
-        own = self.law.explanation
-        return next((rival for rival in self.rivals if rival.law.explanation != own), None)
-
-    def members(self, policy: LawPolicy) -> list[tuple[Law, float]]:
-        """Laws that cannot be distinguished, with their shares of a prediction."""
-        near, seen = [], {self.law.explanation}
-        for rival in self.rivals:
-            if rival.log_odds < policy.class_odds and rival.law.explanation not in seen:
-                seen.add(rival.law.explanation)
-                near.append(rival)
-        laws = [self.law, *(r.law for r in near[: policy.most_members - 1])]
-        odds = np.array([0.0, *(r.log_odds for r in near[: policy.most_members - 1])])
-        shares = np.exp(-np.maximum(odds, 0.0))
-        return list(zip(laws, (shares / shares.sum()).tolist(), strict=True))
-
-
-@dataclass(frozen=True, eq=False)
-class Learning:
-    """What a model lacked, as laws."""
-
-    beginning: Beginning  # the model without laws
-    after: Fit  # with them; the same where there are none
-    tangent: Fit  # with the displacements of their parameters besides, which gives uncertainties
-    laws: tuple[LearntLaw, ...]  # those that were learnt, in their order
-    # the first law that was not kept; None where nothing at all was found
-    refused: LearntLaw | None
-    refusal: Refusal | None  # why it was not
-    held_out: tuple[HeldOut, ...]  # errors of touches left out
-    policy: LawPolicy
-    # effects of the library in whose place the laws stand, since they explain the run better; empty
-    # where the laws stand beside every effect of the model
-    instead_of: tuple[Effect, ...] = ()
-    instead_odds: float = 0.0  # log odds for the laws in their place
-
-    @property
-    def before(self) -> Fit:
-        """The fit without laws."""
-        return self.beginning.fit
-
-    @property
-    def effect_names(self) -> list[str]:
-        """First words of the laws as effects of the user's own, until they get better ones."""
-        count = len(self.laws)
-        return ["learnt-law" if count == 1 else f"learnt-law-{i}" for i in range(1, count + 1)]
-
-    @cached_property
-    def members(self) -> dict[str, list[tuple[Effect, Array, float]]]:
-        """Laws over which predictions average, with amplitudes and shares, by the law chosen.
-
-        Amplitudes of a member are those that it has in the place of the law that was chosen.
-        """
-        out: dict[str, list[tuple[Effect, Array, float]]] = {}
-        chosen = [one.law for one in self.laws]
-        for i, one in enumerate(self.laws):
-            own = out.setdefault(one.law.name, [])
-            for law, share in one.members(self.policy):
-                effects = [*chosen[:i], law, *chosen[i + 1 :]]
-                fit = self.after if law is one.law else self.beginning.fitted(effects)
-                own.append((law, fit.theta[fit.of_effect(law.name)], share))
-        return out
-
-    def predicted(self, run: Run) -> Array:
-        """Deviation that the laws add at the touches of any run, (N,), mm.
-
-        A law that belongs to the run that it was learnt from adds nothing elsewhere.
-        """
-        return self._added(run, run.fingerprint == self.before.run.fingerprint)
-
-    def predicted_by_clock(self, run: Run) -> Array:
-        """The same, if what drives laws of the time kept the times of its run in another."""
-        return self._added(run, True)
-
-    def _added(self, run: Run, is_clock_kept: bool) -> Array:
-        out = np.zeros(len(run))
-        for one in self.laws:
-            for law, theta, share in self.members[one.law.name]:
-                if is_clock_kept or (one.travels and owner_of(law) == "machine"):
-                    out += share * (columns([law], run.touches) @ theta)
-        return out
-
-    @cached_property
-    def saved(self) -> Fit:
-        """With what is not known of every formula beyond the values that its variables had.
-
-        No touch shows that: the estimates are those of `after`, with wider predictions elsewhere.
-        """
-        used = self.after.run.touches[self.after.used]
-        beyond: dict[str, Effect] = {}
-        for one in (one.law for one in self.laws if not one.law.is_curve_alone):
-            theta = self.after.theta[self.after.of_effect(one.name)]
-            beyond |= {law.name: law for law in one.beyond(theta, used)}
-        laws = [one.law for one in self.laws]
-        if not beyond:
-            return self.after
-        return self.beginning.fitted([*laws, *beyond.values()], gross=self.after.gross)
-
-    @property
-    def u(self) -> Array:
-        """Standard uncertainty of the amplitudes and parameters; see `tangent`."""
-        return np.sqrt(np.diag(self.tangent.covariance))
 
 
 @one_blas_thread()
@@ -214,30 +75,26 @@ def learn_beside(
     """
     white = replace(start, memory=None)
     ground = ground or Ground.of(start.run)
-    current, refused = start.fit, None
+    current = start.fit
     laws: list[LearntLaw] = []
     charges: list[float] = []
     is_enough = int(current.used.sum()) >= MIN_TOUCHES_OF_LAW
-    refusal = None if is_enough else Refusal.FEW
+    tried = _Tried(None, current, current, None if is_enough else Refusal.FEW)
     for _ in range(policy.most_laws if is_enough else 0):
-        searched = search_law(Space.of(current), ground, policy)
-        best = _learnt(searched)
-        if best is None:
-            break
         learnt = [one.law for one in laws]
-        fit = white.fitted([*learnt, best.law])
-        refusal = _refusal(start, learnt, best, (current, fit), policy)
-        if refusal is None:
-            best = replace(
-                best, library=nearest_of_library(searched.space), memory=memory_score(current)
-            )
-            refusal = _by_rival(best, is_searched)
-        if refusal is not None:
-            refused = best
+        tried = _tried(start, learnt, current, ground, policy, is_searched)
+        if not tried.is_kept and (rows := _alike(current.gross)).sum() >= MIN_EXPLAINED:
+            fewer = replace(current.gross, rows=current.gross.rows & ~rows)
+            whole = white.fitted(learnt, gross=fewer)
+            other = _tried(start, learnt, whole, ground, policy, is_searched)
+            explained = int((rows & other.fit.used).sum())
+            if other.is_kept and explained >= max(MIN_EXPLAINED, 0.5 * rows.sum()):
+                tried = other
+        if tried.best is None or not tried.is_kept:
             break
-        laws.append(best)
-        charges.append(log_odds(fit, current, best.score))
-        current = _each_anew(white, laws, charges, fit, policy, ground)
+        laws.append(tried.best)
+        charges.append(log_odds(tried.fit, tried.before, tried.best.score))
+        current = _each_anew(white, laws, charges, tried.fit, policy, ground)
     if laws:
         seen = start.run.touches[current.used]
         laws = [_of_its_run(one, seen, policy) for one in laws]
@@ -251,11 +108,53 @@ def learn_beside(
         after=current,
         tangent=start.fitted(learnt, True) if laws else start.fit,
         laws=tuple(laws),
-        refused=refused,
-        refusal=refusal,
+        refused=None if tried.is_kept else tried.best,
+        refusal=tried.refusal,
         held_out=tuple(held_out(start.fit, current, learnt)),
         policy=policy,
     )
+
+
+class _Tried(NamedTuple):
+    """The best law of a search, fits before and with it, and why it is not kept."""
+
+    best: LearntLaw | None
+    before: Fit
+    fit: Fit
+    refusal: Refusal | None
+
+    @property
+    def is_kept(self) -> bool:
+        return self.best is not None and self.refusal is None
+
+
+def _tried(
+    start: Beginning,
+    laws: Sequence[Law],
+    current: Fit,
+    ground: Ground,
+    policy: LawPolicy,
+    is_searched: bool,
+) -> _Tried:
+    """The next law beside others, in white noise."""
+    searched = search_law(Space.of(current), ground, policy)
+    best = _learnt(searched)
+    if best is None:
+        return _Tried(None, current, current, None)
+    fit = replace(start, memory=None).fitted([*laws, best.law])
+    refusal = _refusal(start, laws, best, (current, fit), policy)
+    if refusal is None:
+        nearest = nearest_of_library(searched.space)
+        best = replace(best, library=nearest, memory=memory_score(current))
+        refusal = _by_rival(best, is_searched, policy)
+    return _Tried(best, current, fit, refusal)
+
+
+def _alike(gross: GrossErrors) -> BoolArray:
+    """Gross errors of common size, which a law may explain, (N,)."""
+    size = np.abs(gross.score)
+    middle = np.median(size[gross.rows]) if gross.rows.any() else 0.0
+    return np.asarray(gross.rows & (size < FAR_GROSS * middle))
 
 
 def _of_its_run(one: LearntLaw, seen: Touches, policy: LawPolicy) -> LearntLaw:
@@ -338,11 +237,16 @@ def _refusal(
     return None
 
 
-def _by_rival(best: LearntLaw, is_searched: bool) -> Refusal | None:
-    """Which rival of another kind explains more than a law; None for none."""
+def _by_rival(best: LearntLaw, is_searched: bool, policy: LawPolicy) -> Refusal | None:
+    """Which rival of another kind explains more than a law; None for none.
+
+    An effect of the library whose odds are those of a class leaves the law, which predicts: without
+    it 1.88 um remained of a second run instead of 0.57.
+    """
     if best.memory > best.score:
         return Refusal.MEMORY
-    return Refusal.LIBRARY if best.is_in_library and not is_searched else None
+    library = best.library.score if best.library and not is_searched else -np.inf
+    return Refusal.LIBRARY if library > best.score + policy.class_odds else None
 
 
 def _learnt(searched: Searched) -> LearntLaw | None:

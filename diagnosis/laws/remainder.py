@@ -8,7 +8,8 @@ import numpy as np
 
 from matstd.diagnosis.fit import Fit, Prior
 from matstd.diagnosis.laws.beginning import Beginning, log_odds
-from matstd.diagnosis.laws.learn import Learning, learn_beside
+from matstd.diagnosis.laws.learn import learn_beside
+from matstd.diagnosis.laws.learnt import Learning
 from matstd.diagnosis.laws.library import charge_of
 from matstd.diagnosis.laws.policy import POLICY, LawPolicy
 from matstd.diagnosis.laws.search import Ground
