@@ -27,6 +27,9 @@ SURFACE_LENGTH = 0.2
 DOMAIN_MARGIN = 0.1
 """Share of the range by which the domain of a curve exceeds the values on either side."""
 
+# shapes with a memory that a curve over their variable shows least
+LOOPS = ("hysteresis", "play-quad")
+
 FAST_WAVES = 1200  # frequencies up to which sines of a reading are scanned, per range and half
 
 
@@ -202,15 +205,17 @@ def rough_shapes(space: Space, field: Field, each: int) -> list[Rough]:
                 )
                 for i, j in _of_carriers(power)
             ]
-        if "hysteresis" in WORDS[driver.nature] and driver.name not in ON_BALL:
-            points = grid(SHAPES["hysteresis"], driver, x)
-            H = np.stack([SHAPES["hysteresis"].values(x, *p)[0] for p in points], 1)
+        for word in LOOPS if driver.name not in ON_BALL else ():
+            if word not in WORDS[driver.nature]:
+                continue
+            points = grid(SHAPES[word], driver, x)
+            H = np.stack([SHAPES[word].values(x, *p)[0] for p in points], 1)
             power = (R.T @ H) ** 2 / (share * (S.T @ H**2) + MIN_OWN)
             loops += [
                 Rough(
                     bearer=owner[i],
                     driver=driver,
-                    word="hysteresis",
+                    word=word,
                     places=tuple(points[j].tolist()),
                     explained=power[i, j],
                 )

@@ -40,6 +40,9 @@ from matstd.twin.record import Run
 TOP_SINGLES, TOP_PAIRS, TOP_SQUARES = 14, 6, 2
 """Carriers with one variable, with two, and with one twice, for which formulas are looked for."""
 
+SQUARES = 4
+"""Products of two shapes of one variable that are refined."""
+
 MIN_SHARE_SINGLE, MIN_SHARE_PAIR = 0.4, 0.6
 """Share of the best evidence of a curve from which a formula is looked for."""
 
@@ -49,7 +52,7 @@ CLEAR = 5.0
 """Log evidence by which a formula of one shape is so much better than the curve that no product of
 two shapes of that variable is looked for."""
 
-UNUSUAL = ("power", "saturation", "dead-band", "pulse", "saw", "quad-about")
+UNUSUAL = ("power", "saturation", "dead-band", "pulse", "saw", "quad-about", "play-quad")
 """Shapes that are charged for being met seldom."""
 
 DRIFT = "time"  # variable of an unrecorded driver, of which only smoothness in time is assumed
@@ -108,7 +111,7 @@ def search_law(space: Space, ground: Ground, policy: LawPolicy) -> Searched:
     found += _rough(space, grids)
     if not found or max(c.score for c in found) < one[0].evidence + CLEAR:
         for f in _worth(one, two, MIN_SHARE_SINGLE, TOP_SQUARES):
-            found += product_formulas(space, grids, f.bearer, (f.drivers[0], f.drivers[0]), 2)
+            found += product_formulas(space, grids, f.bearer, (f.drivers[0], f.drivers[0]), SQUARES)
     for f in _worth(_gaining(two, one), one, MIN_SHARE_PAIR, TOP_PAIRS):
         found += product_formulas(space, grids, f.bearer, f.drivers, 6)
     scored = [(_charged(c, field, policy).score, c) for c in _distinct(found)]

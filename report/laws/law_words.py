@@ -67,6 +67,7 @@ _SHAPES = {
     "half-wave": "a half-wave",
     "hysteresis": "a hysteresis loop",
     "play": "a play that follows",
+    "play-quad": "the square of a play that follows",
     "beyond": "what is not known beyond the probed range",
     "course": "what is not known of a driver that was not recorded",
     "curve": "a smooth curve without a formula",

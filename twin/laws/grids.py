@@ -51,8 +51,9 @@ WORDS = {
         "sine", "square", "saw",
     ),
     "level": (
-        "lin", "lin-from", "quad", "quad-about", "cubic", "power", "bump", "step", "window", "ramp",
-        "kink", "kink-before", "saturation", "dead-band", "exp", "hysteresis", "play",
+        "lin", "lin-from", "quad", "quad-about", "power", "bump", "step", "window", "ramp", "kink",
+        "kink-before", "saturation", "dead-band", "exp", "hysteresis", "play",
+        "play-quad",
     ),
 }  # fmt: skip
 """Shapes that make sense of a variable, by its nature."""
@@ -122,6 +123,7 @@ def grid(shape: Shape, driver: Driver, x: Array) -> Array:
         "curve": [(low - 0.1 * span, high + 0.1 * span, 0.1, 10e-3)],
         "course": [(low, high, 0.1, 10e-3)],
         "beyond": [(low, high, 0.3, 10e-3)],
+        "play-quad": [(driver.zero, w, scale) for w in span * np.geomspace(0.01, 0.4, 10)],
         "play": [(driver.zero, w, scale) for w in span * np.geomspace(0.01, 0.4, 10)],
     }  # fmt: skip
     points = list(made[shape.word])

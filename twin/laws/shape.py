@@ -213,6 +213,8 @@ SHAPES: dict[str, Shape] = {
                "(x - play(x, {w})) / {unit}", "w", "unit", remembers=True),
         _shape("play", "play of half width w that follows x, from zero, over unit",
                "(play(x, {w}) - {zero}) / {unit}", "zero", "w", "unit", remembers=True),
+        _shape("play-quad", "square of a play of half width w that follows x, from zero, over unit",
+               "((play(x, {w}) - {zero}) / {unit}) ** 2", "zero", "w", "unit", remembers=True),
         _shape("curve", "smooth curve without a formula, dying away beyond its domain", (),
                *_CURVE, values=_curve, coefficients=_FREE_CURVE),
         _shape("course", "what a driver that was not recorded does in another run", (),
