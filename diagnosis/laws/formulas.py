@@ -32,6 +32,10 @@ MOST_ALIKE = 3
 """Products of one variable's shape that are kept: what looks like a line over a temperature (a
 play, a kink, a settling over time) would crowd out other shapes of the other variable."""
 
+ROUNDED = {"window": "plateau", "ramp": "saturation"}
+"""Shapes with a rounded one beside them, whose grid is too coarse for a narrow one: a worn zone of
+50 mm was taken for a window, and a second run left with 0.65 um instead of 0.58."""
+
 MOST_STEPS = 400  # most evaluations of a refinement
 
 OUTSIDE = 0.25
@@ -192,7 +196,19 @@ def single_formulas(
         scan(space, grids, bearer.C, driver),
         key=lambda one: space.charge(one[2]) - float(space.gained(np.array(one[1]))),
     )
-    return [candidate(space, grids.field, bearer, [part]) for part, _, _ in ranked[:most]]
+    parts = [part for part, _, _ in ranked[:most]]
+    parts += [_rounded(part) for part in parts if part.factor.shape.word in ROUNDED]
+    return [candidate(space, grids.field, bearer, [part]) for part in parts]
+
+
+def _rounded(part: Part) -> Part:
+    """A plateau of the width of a window, or a saturation of that of a ramp."""
+    first, last = part.places
+    width = 0.5 * (last - first)
+    word = ROUNDED[part.factor.shape.word]
+    shift = 0.5 * width
+    places = (first + shift, last - shift, width) if word == "plateau" else (first + width, width)
+    return Part(Factor(SHAPES[word], part.factor.driver), places)
 
 
 def product_formulas(
@@ -303,8 +319,7 @@ def refined(space: Space, field: Field, start: Candidate) -> Candidate:
     law = start.law
     if not law.free or law.is_curve_alone:
         return start
-    values = np.array(law.places)
-    free = np.array(law.free)
+    values, free = np.array(law.places), np.array(law.free)
     inner = law.inner(space.touches)
     steps = np.array([float(inner[i].grid[-1] - inner[i].grid[-2]) for i in free])
     ranges = [
@@ -363,20 +378,3 @@ def _is_allowed(law: Law, places: Sequence[float], ranges: Sequence[tuple[float,
             if gap < 1e-3 * max(spans):
                 return False
     return not ("wa" in named and named["wb"] < 1.2 * named["wa"])
-
-
-def with_curve(
-    space: Space,
-    field: Field,
-    bearer: Bearer,
-    driver: Driver,
-    length: float,
-    size: float,
-    first: Sequence[Part] = (),
-) -> Law:
-    """A smooth curve over a variable, without a formula, where wanted times a first factor."""
-    low, high = field.domain(driver)
-    curve = Part(Factor(SHAPES["curve"], driver), (low, high, length, size))
-    parts = [*first, curve]
-    factors, places = zip(*parts, strict=True)
-    return Law(bearer.carrier, factors, tuple(v for own in places for v in own))

@@ -246,7 +246,7 @@ def _by_rival(best: LearntLaw, is_searched: bool, policy: LawPolicy) -> Refusal 
     if best.memory > best.score:
         return Refusal.MEMORY
     library = best.library.score if best.library and not is_searched else -np.inf
-    return Refusal.LIBRARY if library > best.score + policy.shorter else None
+    return Refusal.LIBRARY if library > best.score + policy.class_odds else None
 
 
 def _learnt(searched: Searched) -> LearntLaw | None:

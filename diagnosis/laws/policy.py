@@ -22,7 +22,8 @@ class LawPolicy:
     unusual: float = 2.0
     min_score: float = 5.0  # log evidence that a law must gain beyond all charges: odds of 150 : 1
     shorter: float = 2.0  # log evidence below which the shorter of two formulas is taken
-    # log odds below which laws form a class; predictions average over its members
+    # log odds below which laws form a class, with an effect of the library that explains as well;
+    # predictions average over its members
     class_odds: float = 4.0
     # log odds of a law over a temperature, a level or a time since an event against every law that
     # belongs to its run alone, below which it may stand for a driver that was not recorded: odds of

@@ -17,7 +17,6 @@ from matstd.diagnosis.laws.formulas import (
     scan,
     single_formulas,
     spread,
-    with_curve,
 )
 from matstd.diagnosis.laws.policy import LawPolicy
 from matstd.diagnosis.laws.screening import (
@@ -254,7 +253,7 @@ def _curves(
     out = []
     for f in one:
         if f.length > 0.0:  # else the variable is a direction, or has two values
-            law = with_curve(space, field, f.bearer, f.drivers[0], f.length, f.size)
+            law = _with_curve(space, field, f.bearer, f.drivers[0], f.length, f.size)
             out.append(_curve_candidate(space, f.bearer, law, f.evidence - policy.tried_singles))
     products = [c for c in formulas if len(c.law.factors) == 2][:3]
     for c in products:
@@ -267,6 +266,23 @@ def _curves(
                 charge = policy.tried_products + space.charge(len(first.factor.shape.free))
                 out.append(_curve_candidate(space, c.bearer, law, evidence - charge))
     return out
+
+
+def _with_curve(
+    space: Space,
+    field: Field,
+    bearer: Bearer,
+    driver: Driver,
+    length: float,
+    size: float,
+    first: Sequence[Part] = (),
+) -> Law:
+    """A smooth curve over a variable, without a formula, where wanted times a first factor."""
+    low, high = field.domain(driver)
+    curve = Part(Factor(SHAPES["curve"], driver), (low, high, length, size))
+    parts = [*first, curve]
+    factors, places = zip(*parts, strict=True)
+    return Law(bearer.carrier, factors, tuple(v for own in places for v in own))
 
 
 def _part(law: Law, which: int) -> Part:
@@ -284,7 +300,7 @@ def _curve_times(
         return None
     C = spread(bearer.C, columns_of(field, space, [first]))
     evidence, length, size = evidence_of(space, C, waves)
-    return with_curve(space, field, bearer, driver, length, size, [first]), evidence
+    return _with_curve(space, field, bearer, driver, length, size, [first]), evidence
 
 
 def _curve_candidate(space: Space, bearer: Bearer, law: Law, score: float) -> Candidate:

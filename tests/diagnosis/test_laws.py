@@ -60,7 +60,7 @@ def test_a_law_is_found_with_its_carrier_variable_and_shape(stylus) -> None:
     (*_, truth), _, found = stylus
     (one,) = found.laws
     assert one.law.name == "law(bias,step time)"
-    assert not one.is_in_library
+    assert one.library.score < one.score
     (size,), (instant,) = amplitudes(found, one.law), places(found, one.law)
     hidden = truth["hidden"][0]["amplitude"] * UM
     assert abs(size.value - hidden) < 3.0 * size.u < 0.2 * hidden
@@ -234,13 +234,36 @@ def test_rivals_of_other_kinds_are_weighed_by_the_same_evidence(stylus) -> None:
     assert one.memory < one.score  # a step is seen as a memory, too, but less well
     assert one.drift < one.score
     effect = parse_effect("backlash(X)", run.touches.chain)
-    better = replace(one, library=LibraryEffect(effect, one.score + 2.0))
-    assert weighed(one, False) is None
-    assert weighed(better, False) is Refusal.LIBRARY
-    assert weighed(better, True) is None  # a diagnosis has looked for it already
-    assert weighed(replace(one, memory=one.score + 1.0), True) is Refusal.MEMORY
+    near, better = (
+        replace(one, rivals=(), library=LibraryEffect(effect, one.score + more))
+        for more in (2.0, POLICY.class_odds + 1.0)
+    )
+    assert weighed(one, False, POLICY) is None
+    assert weighed(near, False, POLICY) is None  # both predict, by their odds
+    assert [share for _, share in near.members(POLICY)] == pytest.approx([0.119, 0.881], abs=1e-3)
+    assert weighed(better, False, POLICY) is Refusal.LIBRARY
+    assert weighed(better, True, POLICY) is None  # a diagnosis has looked for it already
+    assert weighed(replace(one, memory=one.score + 1.0), True, POLICY) is Refusal.MEMORY
     none = replace(found, laws=(), refused=better, refusal=Refusal.LIBRARY)
     assert 'matstd diagnose --add "backlash(X)"' in no_law_sentence(none)
+
+
+def test_a_law_that_few_touches_show_is_no_row_of_gross_errors(stylus) -> None:
+    """Six touches beyond an edge stand out like chips; six chips of the same size have no law."""
+    run = stylus[1][2]
+    law = parse_effect("law(EZZ,step Z)", run.touches.chain)
+    z = np.sort(run.touches.reading("Z"))
+    moved = columns([law.tuned(0.5 * (z[-7] + z[-6]))], run.touches) @ [14.0 * UM]
+    assert np.count_nonzero(moved) == 6
+    hidden = replace(run, deviation=run.deviation + moved)
+    assert fit_run(hidden, ordinary_model(run.touches.chain)).gross.rows[moved != 0.0].sum() >= 4
+    found = learn_laws(hidden)
+    assert [d.name for one in found.laws for d in one.law.drivers] == ["Z"]
+    assert found.after.used[moved != 0.0].all()
+    rng = np.random.default_rng(3)
+    chips = np.zeros(len(run))
+    chips[rng.choice(len(run), 6, replace=False)] = rng.uniform(10.0, 15.0, 6) * UM
+    assert learn_laws(replace(run, deviation=run.deviation + chips)).laws == ()
 
 
 def test_a_diagnosis_learns_the_law_of_what_remains(stylus, tmp_path) -> None:
