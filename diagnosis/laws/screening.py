@@ -187,7 +187,8 @@ def rough_shapes(space: Space, field: Field, each: int) -> list[Rough]:
     owner = [b for b in field.bearers for _ in range(b.C.shape[1])]
     share = max(1.0 - space.basis.shape[1] / space.count, 0.1)
     R, S = C * space.r[:, None], C**2
-    waves, loops = [], []
+    waves: list[Rough] = []
+    loops: list[Rough] = []
     for driver in field.drivers:
         x = field.x[driver.name]
         if driver.nature == "linear" or driver.name == "time":
@@ -195,32 +196,19 @@ def rough_shapes(space: Space, field: Field, each: int) -> list[Rough]:
             angle = 2.0 * np.pi * x[:, None] * f
             along = (R.T @ np.sin(angle)) ** 2 + (R.T @ np.cos(angle)) ** 2  # (carriers, F)
             power = along / (0.5 * share * S.sum(axis=0)[:, None] + MIN_OWN)
+            best = enumerate(np.argmax(power, axis=1))
             waves += [
-                Rough(
-                    bearer=owner[i],
-                    driver=driver,
-                    word="sine",
-                    places=(float(1.0 / f[j]),),
-                    explained=power[i, j],
-                )
-                for i, j in _of_carriers(power)
+                Rough(owner[i], driver, "sine", (float(1.0 / f[j]),), power[i, j]) for i, j in best
             ]
         for word in LOOPS if driver.name not in ON_BALL else ():
-            if word not in WORDS[driver.nature]:
-                continue
-            points = grid(SHAPES[word], driver, x)
-            H = np.stack([SHAPES[word].values(x, *p)[0] for p in points], 1)
-            power = (R.T @ H) ** 2 / (share * (S.T @ H**2) + MIN_OWN)
-            loops += [
-                Rough(
-                    bearer=owner[i],
-                    driver=driver,
-                    word=word,
-                    places=tuple(points[j].tolist()),
-                    explained=power[i, j],
-                )
-                for i, j in _of_carriers(power)
-            ]
+            if word in WORDS[driver.nature]:
+                points = grid(SHAPES[word], driver, x)
+                H = np.stack([SHAPES[word].values(x, *p)[0] for p in points], 1)
+                power = (R.T @ H) ** 2 / (share * (S.T @ H**2) + MIN_OWN)
+                best = enumerate(np.argmax(power, axis=1))
+                loops += [
+                    Rough(owner[i], driver, word, tuple(points[j]), power[i, j]) for i, j in best
+                ]
     return [r for kind in (waves, loops) for r in sorted(kind, key=lambda r: -r.explained)[:each]]
 
 
@@ -228,11 +216,6 @@ def _quick_frequencies(driver: Driver, x: Array) -> Array:
     """Too quick for a curve; touches follow one another at nearly even times, anywhere."""
     limit = 0.45 * len(np.unique(x)) if driver.nature == "time" else FAST_WAVES
     return np.asarray(np.arange(8.0, limit, 0.5) / np.ptp(x))
-
-
-def _of_carriers(power: Array) -> list[tuple[int, int]]:
-    """Row of every carrier with its largest column."""
-    return list(enumerate(np.argmax(power, axis=1).tolist()))
 
 
 def modulations(space: Space, field: Field, C: Array) -> list[tuple[Driver, float]]:

@@ -253,36 +253,19 @@ def _curves(
     out = []
     for f in one:
         if f.length > 0.0:  # else the variable is a direction, or has two values
-            law = _with_curve(space, field, f.bearer, f.drivers[0], f.length, f.size)
-            out.append(_curve_candidate(space, f.bearer, law, f.evidence - policy.tried_singles))
+            score = f.evidence - policy.tried_singles
+            out.append(_curve(field, f.bearer, f.drivers[0], (f.length, f.size), score))
     products = [c for c in formulas if len(c.law.factors) == 2][:3]
     for c in products:
         for kept, other in ((0, 1), (1, 0)):
-            first = _part(c.law, kept)
-            driver = c.law.factors[other].driver
-            made = _curve_times(space, field, c.bearer, first, driver)
-            if made is not None:
-                law, evidence = made
+            first, driver = _part(c.law, kept), c.law.factors[other].driver
+            waves = waves_of(field, driver)
+            if waves.lengths[0] > 0.0:
+                C = spread(c.bearer.C, columns_of(field, space, [first]))
+                evidence, *size = evidence_of(space, C, waves)
                 charge = policy.tried_products + space.charge(len(first.factor.shape.free))
-                out.append(_curve_candidate(space, c.bearer, law, evidence - charge))
+                out.append(_curve(field, c.bearer, driver, size, evidence - charge, first))
     return out
-
-
-def _with_curve(
-    space: Space,
-    field: Field,
-    bearer: Bearer,
-    driver: Driver,
-    length: float,
-    size: float,
-    first: Sequence[Part] = (),
-) -> Law:
-    """A smooth curve over a variable, without a formula, where wanted times a first factor."""
-    low, high = field.domain(driver)
-    curve = Part(Factor(SHAPES["curve"], driver), (low, high, length, size))
-    parts = [*first, curve]
-    factors, places = zip(*parts, strict=True)
-    return Law(bearer.carrier, factors, tuple(v for own in places for v in own))
 
 
 def _part(law: Law, which: int) -> Part:
@@ -291,19 +274,22 @@ def _part(law: Law, which: int) -> Part:
     return Part(factor, law.places[own])
 
 
-def _curve_times(
-    space: Space, field: Field, bearer: Bearer, first: Part, driver: Driver
-) -> tuple[Law, float] | None:
-    """A curve over a variable, times a factor that is in place; None over two values."""
-    waves = waves_of(field, driver)
-    if waves.lengths[0] == 0.0:
-        return None
-    C = spread(bearer.C, columns_of(field, space, [first]))
-    evidence, length, size = evidence_of(space, C, waves)
-    return _with_curve(space, field, bearer, driver, length, size, [first]), evidence
+def _curve(
+    field: Field,
+    bearer: Bearer,
+    driver: Driver,
+    size: Sequence[float],
+    score: float,
+    *first: Part,
+) -> Candidate:
+    """A smooth curve over a variable, without a formula, where wanted times a first factor.
 
-
-def _curve_candidate(space: Space, bearer: Bearer, law: Law, score: float) -> Candidate:
+    Args:
+        size: Its correlation length, as a share of the domain, and its size, mm or rad.
+    """
+    curve = Part(Factor(SHAPES["curve"], driver), (*field.domain(driver), *size))
+    factors, places = zip(*first, curve, strict=True)
+    law = Law(bearer.carrier, factors, tuple(v for own in places for v in own))
     return Candidate(
         bearer=bearer, law=law, explained=0.0, parameters=len(law.parameters), score=score
     )

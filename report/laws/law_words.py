@@ -12,6 +12,7 @@ from matstd.diagnosis.laws import (
     LearntLaw,
     Refusal,
     amplitudes,
+    partial_residual,
     places,
 )
 from matstd.report.laws.run_words import run_sentence
@@ -79,10 +80,7 @@ _LOOKS = {
     ("bump", "linear"): "It looks like a hose or a cable chain, or a worn place of a guide.",
     ("plateau", "linear"): "It looks like a worn zone of a scale or of a guide.",
     ("window", "linear"): "It looks like a hose, a stop or a damaged stretch of a scale.",
-    (
-        "step",
-        "time",
-    ): "It looks like something that was changed or moved: a stylus, a clamp, a part.",
+    ("step", "time"): "It looks like something that was changed: a stylus, a clamp, a part.",
     ("square", "time"): "It looks like something that switches: coolant, a pump, a chiller.",
     ("saw", "time"): "It looks like a controller with two limits: a cooler, a level.",
     ("sine", "time"): "It looks like a cycle of a cooler or of the room.",
@@ -224,20 +222,13 @@ def size_words(learning: Learning, law: Law) -> str:
 def _size(learning: Learning, law: Law) -> str:
     found = amplitudes(learning, law)
     if law.is_curve_alone:
-        rms = _rms(learning, law)
-        return f"{microns(rms)} rms at the touches"
+        own = partial_residual(learning, law)[1]
+        return f"{microns(float((own**2).mean() ** 0.5))} rms at the touches"
     if len(found) == 1:
         return amplitude_words(found[0])
     total = math.sqrt(sum(a.value**2 for a in found))
     u = math.sqrt(sum((a.value * (a.u or 0.0)) ** 2 for a in found)) / max(total, 1e-300)
     return amplitude_words(Estimate("amplitude", total, u, found[0].unit))
-
-
-def _rms(learning: Learning, law: Law) -> float:
-    from matstd.diagnosis.laws import partial_residual
-
-    own = partial_residual(learning, law)[1]
-    return float((own**2).mean() ** 0.5)
 
 
 def looks_like(law: Law) -> str:
