@@ -45,8 +45,6 @@ WITHIN, WORSE, ALIKE = 1.1, 1.02, 0.999
 """Ratio to the error of the true law that is right, and to that without a law that is worse; cosine
 of carriers that are one class."""
 
-NAMES = {"since_setup": "since-setup", "since_pose": "since-pose", "rpm": "rpm"}
-
 
 @dataclass
 class Score:
@@ -91,7 +89,7 @@ def left_of(run: Run, deviation: np.ndarray, ordinary: Ordinary) -> float:
 
 def variable(name: str) -> str:
     """A variable of a truth as laws name it."""
-    return NAMES.get(name, "T-" + name[2:] if name.startswith("T_") else name)
+    return name.replace("_", "-", 1)
 
 
 def is_right(found: Learning, hidden: dict[str, Any], law: Law) -> tuple[bool, bool, bool]:

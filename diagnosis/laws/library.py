@@ -63,17 +63,11 @@ def _best(space: Space, variants: list[Effect]) -> tuple[float, int]:
     C = C / np.maximum(size, 1e-300)
     U = space.basis.T @ C
     b = (C.T @ space.r).reshape(-1, k)
-    shape = (len(variants), k)
-    G = _gram(C, *shape) - _gram(U, *shape)
+    blocks, own = (A.reshape(len(A), len(variants), k) for A in (C, U))
+    G = np.einsum("nga,ngb->gab", blocks, blocks) - np.einsum("nga,ngb->gab", own, own)
     values, vectors = np.linalg.eigh(G)
     along = np.einsum("gab,ga->gb", vectors, b) ** 2
     seen = values > MIN_OWN
     explained = np.where(seen, along / np.where(seen, values, 1.0), 0.0).sum(axis=1)
     which = int(np.argmax(explained))
     return float(explained[which]), which
-
-
-def _gram(C: Array, count: int, k: int) -> Array:
-    """Inner products of the columns of every variant, (count, k, k)."""
-    blocks = C.reshape(len(C), count, k)
-    return np.einsum("nga,ngb->gab", blocks, blocks)

@@ -83,6 +83,7 @@ def _class(learning: Learning, law: Law, kind: str, run: str) -> str:
     fields = [_field(law, i, e) for i, e in enumerate(estimates) if i in _free(law)]
     is_entry = law.carrier.symbol is not None or law.carrier.name == "bias"
     entry = f', "{law.carrier.name}"' if is_entry else ""
+    units = [f"{law.place_names[i]}: {law.units[i]}" for i in _free(law)]
     typical = "; ".join(amplitude_words(a) for a in amplitudes(learning, law)[:3])
     return CLASS.format(
         name=name,
@@ -96,7 +97,7 @@ def _class(learning: Learning, law: Law, kind: str, run: str) -> str:
         body=_body(learning, law, estimates, is_entry),
         constant=kind.upper().replace("-", "_"),
         formula=formula_words(law),
-        units="; ".join([f"a: {_UNITS.get(law.carrier.unit, law.carrier.unit)}", *_units(law)]),
+        units="; ".join([f"a: {_UNITS.get(law.carrier.unit, law.carrier.unit)}", *units]),
         typical=typical,
         run=run,
         owner="" if law.belongs_to == "machine" else OF_ITS_RUN,
@@ -104,11 +105,6 @@ def _class(learning: Learning, law: Law, kind: str, run: str) -> str:
 
 
 _UNITS = {"mm": "µm", "rad": "µrad"}
-
-
-def _units(law: Law) -> list[str]:
-    """`x0: mm` of every parameter that the run determines."""
-    return [f"{law.place_names[i]}: {law.units[i]}" for i in _free(law)]
 
 
 def _free(law: Law) -> tuple[int, ...]:
@@ -131,13 +127,13 @@ def _field_name(name: str) -> str:
 
 def _field(law: Law, index: int, one: Estimate) -> str:
     """A scanned field about the value that was found."""
-    jumps = [f.shape.jumps for f in law.factors for _ in f.shape.places][index]
-    is_time = [f.driver.nature == "time" for f in law.factors for _ in f.shape.places][index]
+    factor = next(factor for factor, own in law.parts if own.start <= index < own.stop)
+    is_instant = factor.shape.jumps and factor.driver.nature == "time"
     half = 3.0 * one.u if one.u else 0.1 * abs(one.value) or 1.0
     unit = one.unit if one.unit in ("mm", "rad", "s") else "1"
     if one.name.split("-")[0] in ("w", "wa", "wb", "period", "p"):
         half = min(half, 0.5 * abs(one.value))
-    acts = ', acts="at an instant"' if jumps and is_time else ""
+    acts = ', acts="at an instant"' if is_instant else ""
     decimals = 2 - math.floor(math.log10(half))
     found = f"{round(one.value, decimals + 2):.12g}"
     note = f"  # found {place_words(one)}" if one.u else ""

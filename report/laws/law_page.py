@@ -43,6 +43,14 @@ _ALIKE = (
     "shares. A run in which they differ decides: other axis positions for other carriers, another "
     "course of time for a temperature."
 )
+_NOTHING = (
+    "What remains follows from nothing that the run recorded in any form that was tried. The model "
+    "of the starting effects stays as it is."
+)
+_MEANS = (
+    "The law predicts touches that were not fitted. It is no cause: it holds where it was learnt, "
+    "and a named effect with the same form may replace it."
+)
 _NEXT = (
     "Give the law its name in effect.py, and try it on another run: `matstd compare RUN.csv "
     "--model model.toml --effects effect.py`; only then compensate with it."
@@ -72,11 +80,12 @@ def write_law_page(
         visit: That distinguishes the laws from their rivals.
         live: View in which the laws are switched; None for a page of pictures.
     """
+    lead, means, what_next = _head(learning, visit, title)
     page = Page(
         heading=f"What the model leaves of {title}",
-        lead=_lead(learning),
-        means=_meaning(learning),
-        next=_next(learning, visit, title),
+        lead=lead,
+        means=means,
+        next=what_next,
         key=_key(learning, second),
         sections=law_sections(learning, visit, second),
         foot=[_FOOT],
@@ -99,28 +108,12 @@ def law_sections(
     return [*out, *(visit_section(visit) if visit else []), _held_out(learning, second)]
 
 
-def _meaning(learning: Learning) -> str:
+def _head(learning: Learning, visit: VisitPlan, title: str) -> tuple[str, str, str]:
+    """What was learnt, what it means, and what to do next."""
     if not learning.laws:
-        return (
-            "What remains follows from nothing that the run recorded in any form that was tried. "
-            "The model of the starting effects stays as it is."
-        )
-    return (
-        "The law predicts touches that were not fitted. It is no cause: it holds where it was "
-        "learnt, and a named effect with the same form may replace it."
-    )
-
-
-def _next(learning: Learning, visit: VisitPlan, title: str) -> str:
-    if not learning.laws:
-        return _WITHOUT
-    return _NEXT if visit.touches is None else f"{_VISIT.format(runs=title)} {_NEXT}"
-
-
-def _lead(learning: Learning) -> str:
-    if not learning.laws:
-        return no_law_sentence(learning)
-    return " ".join(sentence(law_sentence(learning, one)) for one in learning.laws)
+        return no_law_sentence(learning), _NOTHING, _WITHOUT
+    lead = " ".join(sentence(law_sentence(learning, one)) for one in learning.laws)
+    return lead, _MEANS, _NEXT if visit.touches is None else f"{_VISIT.format(runs=title)} {_NEXT}"
 
 
 def _key(learning: Learning, second: SecondRun | None) -> list[KeyFigure]:
