@@ -19,39 +19,26 @@ from matstd.twin.record import Run
 
 @dataclass(frozen=True, eq=False)
 class Rival:
-    """A law beside the chosen one.
-
-    Attributes:
-        log_odds: Of the chosen law against it.
-    """
+    """A law beside the chosen one."""
 
     law: Law
-    log_odds: float
+    log_odds: float  # of the chosen law against it
 
 
 @dataclass(frozen=True, eq=False)
 class LearntLaw:
-    """One law with what speaks for it.
+    """One law with what speaks for it."""
 
-    Attributes:
-        law: With the parameters of its shapes.
-        alike: Carriers that do the same at every touch of this run.
-        score: Log evidence that it gains, all charges taken off.
-        curve: That of the best law without a formula.
-        drift: That of a driver which was not recorded but is smooth in time.
-        rivals: Other laws, the nearest first; those within the policy's odds are its class.
-        library: The effect of the library that explains most of the same; None without any.
-        memory: Log evidence of noise that remembers in the place of the law.
-    """
-
-    law: Law
-    alike: tuple[Carrier, ...]
-    score: float
-    curve: float
-    drift: float
+    law: Law  # with the parameters of its shapes
+    alike: tuple[Carrier, ...]  # carriers that do the same at every touch of this run
+    score: float  # log evidence that it gains, all charges taken off
+    curve: float  # that of the best law without a formula
+    drift: float  # that of a driver which was not recorded but is smooth in time
+    # other laws, the nearest first; those within the policy's odds are its class
     rivals: tuple[Rival, ...]
+    # the effect of the library that explains most of the same; None without any
     library: LibraryEffect | None = None
-    memory: float = -np.inf
+    memory: float = -np.inf  # log evidence of noise that remembers in the place of the law
 
     @property
     def travels(self) -> bool:
@@ -92,31 +79,21 @@ class LearntLaw:
 
 @dataclass(frozen=True, eq=False)
 class Learning:
-    """What a model lacked, as laws.
+    """What a model lacked, as laws."""
 
-    Attributes:
-        beginning: The model without laws.
-        after: With them; the same where there are none.
-        tangent: With the displacements of their parameters besides, which gives uncertainties.
-        laws: Those that were learnt, in their order.
-        refused: The first law that was not kept; None where nothing at all was found.
-        refusal: Why it was not.
-        held_out: Errors of touches left out.
-        instead_of: Effects of the library in whose place the laws stand, since they explain the run
-            better; empty where the laws stand beside every effect of the model.
-        instead_odds: Log odds for the laws in their place.
-    """
-
-    beginning: Beginning
-    after: Fit
-    tangent: Fit
-    laws: tuple[LearntLaw, ...]
+    beginning: Beginning  # the model without laws
+    after: Fit  # with them; the same where there are none
+    tangent: Fit  # with the displacements of their parameters besides, which gives uncertainties
+    laws: tuple[LearntLaw, ...]  # those that were learnt, in their order
+    # the first law that was not kept; None where nothing at all was found
     refused: LearntLaw | None
-    refusal: Refusal | None
-    held_out: tuple[HeldOut, ...]
+    refusal: Refusal | None  # why it was not
+    held_out: tuple[HeldOut, ...]  # errors of touches left out
     policy: LawPolicy
+    # effects of the library in whose place the laws stand, since they explain the run better; empty
+    # where the laws stand beside every effect of the model
     instead_of: tuple[Effect, ...] = ()
-    instead_odds: float = 0.0
+    instead_odds: float = 0.0  # log odds for the laws in their place
 
     @property
     def before(self) -> Fit:

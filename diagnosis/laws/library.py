@@ -6,7 +6,6 @@ import numpy as np
 
 from matstd.diagnosis.evidence import tuned_variants
 from matstd.diagnosis.laws.space import MIN_OWN, Space
-from matstd.twin.frames import Array
 from matstd.twin.library import proposals
 from matstd.twin.model import Effect, columns, inner_values, traits
 from matstd.twin.record import Touches
