@@ -16,7 +16,7 @@ from matstd.twin.files import written_whole
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain, Link
 from matstd.twin.units import DEG
-from matstd.twin.words import in_own_unit
+from matstd.twin.words import LENGTHS, in_own_unit
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -108,10 +108,11 @@ def save(drawn: Figure, path: str | Path) -> None:
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.text import Text
 
-    for text in drawn.findobj(Text):
-        text.set_text(in_own_unit(text.get_text()))
+    if in_own_unit(LENGTHS) != LENGTHS:
+        for text in drawn.findobj(Text):
+            text.set_text(in_own_unit(text.get_text()))
+    drawn.set_dpi(DPI)
     with written_whole(path) as part:
-        drawn.set_dpi(DPI)
         FigureCanvasAgg(drawn).print_png(part)
 
 
