@@ -51,7 +51,8 @@ def learn_remainder(
     ground = Ground.of(end.run)
     beside = learn_beside(Beginning.of_fit(end, base, known), rest, True, ground)
     if found:
-        alone = learn_beside(Beginning.of_fit(start, base, known), policy, True, ground)
+        instead = replace(policy, most_laws=most)
+        alone = learn_beside(Beginning.of_fit(start, base, known), instead, True, ground)
         odds = _odds(alone, beside, found) if alone.laws else -np.inf
         if odds >= policy.shorter:
             return replace(alone, instead_of=found, instead_odds=odds)

@@ -28,6 +28,7 @@ from matstd.twin.units import UM
 MOST_DRAWN = 4000  # touches that are drawn as points; means are always over all
 
 COLUMNS = 4
+LEVEL = 4  # names of values that stand beside one another; more of them are turned
 
 
 def kept(n: int) -> IntArray:
@@ -45,7 +46,12 @@ def draw_over_variables(fit: Fit, panels: Sequence[RankedVariable]) -> Figure:
     rows = fit.used
     r, weight = fit.residual[rows] / UM, 1.0 / fit.run.u[rows] ** 2
     count = max(1, -(-len(panels) // COLUMNS))
-    drawn = figure(0.3 + 1.95 * count)
+    height = 0.3 + 1.95 * count
+    # a grid of plain scales has known margins; laying it out takes as long as drawing it
+    is_plain = all(len(panel.labels or ()) <= LEVEL for panel in panels)
+    drawn = figure(height, layout=None if is_plain else "constrained")
+    if is_plain:
+        drawn.subplots_adjust(0.065, 0.5 / height, 0.945, 1.0 - 0.1 / height, 0.08, 0.3)
     axes = drawn.subplots(count, COLUMNS, sharey=True, squeeze=False)
     limit = robust_limit(r, 0.995)
     for ax, panel in zip(axes.flat, panels, strict=False):
@@ -53,7 +59,7 @@ def draw_over_variables(fit: Fit, panels: Sequence[RankedVariable]) -> Figure:
         _panel(ax, values, r, weight, limit)
         ax.set_xlabel(label, fontsize=8.5, labelpad=1)
         if panel.labels is not None:
-            turned = 90 if len(panel.labels) > 4 else 0
+            turned = 90 if len(panel.labels) > LEVEL else 0
             ax.set_xticks(np.arange(len(panel.labels)), panel.labels, rotation=turned)
             ax.set_xlim(-0.5, len(panel.labels) - 0.5)
             ax.tick_params(axis="x", labelsize=7.5)
