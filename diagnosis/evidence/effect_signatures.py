@@ -6,10 +6,11 @@ show. Columns are divided by the noise and scaled by the prior of the effect, so
 signature is how many standard deviations of noise the effect at its usual size stands out by.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import product
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +27,11 @@ Progress = Callable[[float, str], None]
 
 BLOCK = 256  # columns that are projected at a time
 MAX_GRID_POINTS = 1000  # most points of the grid of one effect's inner parameters
+MAX_KEPT_NUMBERS = 12_000_000  # numbers of raw columns that are kept of a run, 96 MB
+
+_RAW: WeakKeyDictionary[Touches, dict[tuple[Effect, ...], Array]] = WeakKeyDictionary()
+"""Raw columns of blocks of effects: every turn of a search asks for the same ones, and the model
+that is projected out of them differs by a few gross errors."""
 
 
 def quiet(share: float, doing: str) -> None:
@@ -100,8 +106,22 @@ class ResidualSpace:
 
     def columns(self, effects: Sequence[Effect]) -> Array:
         """Whitened columns of effects, scaled by their prior, (N, K)."""
+        return self.whitened(columns(effects, self.touches), effects)
+
+    def kept_columns(self, effects: Sequence[Effect]) -> Array:
+        """The same, worked out once for every turn of a search."""
+        key = tuple(effects)
+        if len(key) == 1 or not all(isinstance(e, Hashable) for e in key):
+            return self.columns(key)
+        kept = _RAW.setdefault(self.touches, {})
+        C = kept[key] if key in kept else columns(key, self.touches)
+        if key not in kept and sum(map(np.size, kept.values())) + C.size <= MAX_KEPT_NUMBERS:
+            kept[key] = C
+        return self.whitened(C, key)
+
+    def whitened(self, C: Array, effects: Sequence[Effect]) -> Array:
+        """Raw columns of effects (all touches, K) whitened and scaled by their prior, (N, K)."""
         sd = np.array([p.sd for e in effects for p in e.parameters])
-        C = columns(effects, self.touches)
         if self.whitener is not None:
             return self.whitener(C * sd)
         return (C if self.used.all() else C[self.used]) * sd / self.u[:, None]
@@ -254,7 +274,7 @@ def signatures(
     C = np.empty((len(complement.residual), int(start[-1])), order="F")
     size = np.empty(int(start[-1]))
     for first, last in blocks(variants):
-        raw = complement.columns(variants[first:last])
+        raw = complement.kept_columns(variants[first:last])
         size[start[first] : start[last]] = np.linalg.norm(raw, axis=0)
         C[:, start[first] : start[last]] = complement.project(raw)
         progress(last / len(variants), "signatures of effects")

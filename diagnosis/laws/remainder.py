@@ -47,11 +47,13 @@ def learn_remainder(
     found = tuple(e for e in end.model.effects if e.name not in names)
     if not is_left and not (found and all(e.kind in IMITATORS for e in found)):
         return None
-    rest = policy if is_left else replace(policy, most_laws=0)
+    rest, instead = policy, policy
+    if not is_left:
+        rest = replace(policy, most_laws=0)
+        instead = replace(policy, most_laws=min(policy.most_laws, len(found)))
     ground = Ground.of(end.run)
     beside = learn_beside(Beginning.of_fit(end, base, known), rest, True, ground)
     if found:
-        instead = replace(policy, most_laws=most)
         alone = learn_beside(Beginning.of_fit(start, base, known), instead, True, ground)
         odds = _odds(alone, beside, found) if alone.laws else -np.inf
         if odds >= policy.shorter:

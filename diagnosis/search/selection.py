@@ -185,8 +185,13 @@ class Search:
         """
         if not follows_driver(effect):
             return -POLICY.log_odds_series * is_series(effect, self.complement.touches.chain)
-        chosen = POLICY.log_odds_unrecorded + np.log(max(len(drives(self.complement.touches)), 1))
-        return float(-np.log(tries) - chosen * (not is_own_sensor(effect)))
+        return float(-np.log(tries) - self._chosen * (not is_own_sensor(effect)))
+
+    @cached_property
+    def _chosen(self) -> float:
+        """Log odds that a law of a recorded driver pays for the choice of its driver."""
+        count = max(len(drives(self.complement.touches)), 1)
+        return POLICY.log_odds_unrecorded + float(np.log(count))
 
     # --- tests ------------------------------------------------------------------------------------
 
