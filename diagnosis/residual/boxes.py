@@ -1,7 +1,9 @@
 """Boxes of a few conditions on the columns of a run, and the search for the best of them."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from enum import Enum
+from functools import cache, cached_property
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -40,7 +42,8 @@ class Condition(NamedTuple):
     bound: float | str
 
 
-class Bounded(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class Bounded:
     """A column of the run that may bound a region."""
 
     name: str
@@ -48,12 +51,12 @@ class Bounded(NamedTuple):
     cuts: tuple[float, ...]  # values between the bins; none of a label
     labels: tuple[str, ...] = ()  # names of the bins of a label
 
-    @property
+    @cached_property
     def size(self) -> int:
         """Number of bins."""
         return len(self.labels) or len(self.cuts) + 1
 
-    @property
+    @cached_property
     def is_offered(self) -> BoolArray:
         """Whether bins i to k are a region, (B, B); of a label only single ones."""
         square = np.ones((self.size, self.size), dtype=bool)
@@ -124,7 +127,8 @@ def _round_between(low: float, high: float) -> float:
     return high
 
 
-Box = dict[int, tuple[int, int]]
+Bins = tuple[int, int]
+Box = dict[int, Bins]
 """First and last bin of every variable that bounds a region, by its number."""
 
 
@@ -151,11 +155,18 @@ def best_box(measures: Sequence[Measure], known: Sequence[Bounded], n: int) -> F
     the bins of each are set again beside the rest.
     """
     count = [float(v.is_offered.sum()) for v in known]
-    everywhere = np.ones(n, dtype=bool)
+
+    @cache
+    def largest(m: int, v: int, beside: frozenset[tuple[int, Bins]]) -> tuple[float, Bins]:
+        """The largest gain by bins of one variable within bins of others."""
+        gains = measures[m].gains(rows_in(known, dict(beside), n), known[v])
+        i, k = np.unravel_index(int(np.argmax(gains)), gains.shape)
+        return float(gains[i, k]), (int(i), int(k))
+
     starts: list[Found] = []
-    for m, measure in enumerate(measures):
-        for v, variable in enumerate(known):
-            gain, bins = _largest(measure.gains(everywhere, variable))
+    for m in range(len(measures)):
+        for v in range(len(known)):
+            gain, bins = largest(m, v, frozenset())
             starts.append(Found(m, {v: bins}, gain, len(measures) * sum(count)))
     starts = [s for s in sorted(starts, key=lambda s: -s.gain)[:MAX_STARTS] if s.gain > 0.0]
     best = max(starts, key=_worth, default=None)
@@ -165,8 +176,11 @@ def best_box(measures: Sequence[Measure], known: Sequence[Bounded], n: int) -> F
         for start in starts:
             for v in range(len(known)):
                 if v not in start.box:
-                    one = _extended(measures[start.measure], known, start, v)
-                    longer.append(one._replace(tried=tried))
+                    box, gain = dict(start.box), start.gain
+                    for w in (v, *start.box):  # every variable set again beside the others
+                        beside = frozenset((k, bins) for k, bins in box.items() if k != w)
+                        gain, box[w] = largest(start.measure, w, beside)
+                    longer.append(Found(start.measure, box, gain, tried))
         starts = sorted(longer, key=lambda s: -s.gain)[: MAX_STARTS // 4]
         best = max([*starts, *([best] if best else [])], key=_worth, default=None)
     return best if best is not None and _worth(best) > 0.0 else None
@@ -176,24 +190,12 @@ def _worth(found: Found) -> float:
     return found.gain - float(np.log(found.tried))
 
 
-def _largest(gains: Array) -> tuple[float, tuple[int, int]]:
-    """The largest gain and its first and last bin."""
-    i, k = np.unravel_index(int(np.argmax(gains)), gains.shape)
-    return float(gains[i, k]), (int(i), int(k))
-
-
-def _extended(measure: Measure, known: Sequence[Bounded], start: Found, v: int) -> Found:
-    """A box bounded by one variable more, every variable set again beside the others."""
-    box, gain = dict(start.box), start.gain
-    for w in (v, *start.box):
-        others = {k: bins for k, bins in box.items() if k != w}
-        gain, box[w] = _largest(measure.gains(rows_in(known, others), known[w]))
-    return start._replace(box=box, gain=gain)
-
-
-def rows_in(known: Sequence[Bounded], box: Box) -> BoolArray:
-    """Touches in a box, (N,)."""
-    return np.all([known[v].inside(*bins) for v, bins in box.items()], axis=0)
+def rows_in(known: Sequence[Bounded], box: Box, n: int) -> BoolArray:
+    """Of n touches those in a box, (N,)."""
+    rows = np.ones(n, dtype=bool)
+    for v, bins in box.items():
+        rows &= known[v].inside(*bins)
+    return rows
 
 
 def summed(parts: Array | IntArray) -> Array:

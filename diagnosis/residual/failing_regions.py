@@ -195,7 +195,7 @@ def _wrong(
         found = best_box(measures, known, len(fit.used))
         if found is None:
             return
-        rows = rows_in(known, found.box)
+        rows = rows_in(known, found.box, len(fit.used))
         inside = [_white(space, (rows * c)[:, None]) for c in columns]
         c = space.project(inside[found.measure])[:, 0]
         own, along = float(c @ c), float(c @ space.residual)
@@ -274,7 +274,7 @@ def _loud(fit: Fit, space: ResidualSpace, known: Sequence[Bounded], most: int) -
         found = best_box([_Scatter(squares, left)], known, len(fit.used))
         if found is None:
             return
-        rows = rows_in(known, found.box) & left
+        rows = rows_in(known, found.box, len(fit.used)) & left
         inside, outside = squares[rows], squares[left & ~rows]
         ratio = float(inside.mean() / max(outside.mean(), 1e-12))
         p = min(1.0, float(f_tail(ratio, len(inside), len(outside))) * found.tried)
@@ -286,7 +286,7 @@ def _loud(fit: Fit, space: ResidualSpace, known: Sequence[Bounded], most: int) -
 
 def _region(fit: Fit, known: Sequence[Bounded], box: Box, wrong: Wrong | None, p: float) -> Region:
     """A box as a region."""
-    rows = rows_in(known, box)
+    rows = rows_in(known, box, len(fit.used))
     r = fit.residual[rows & fit.used]
     return Region(
         conditions=tuple(c for v in sorted(box) for c in known[v].conditions(*box[v])),
