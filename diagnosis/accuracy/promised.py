@@ -89,7 +89,8 @@ def other_places(touches: Touches, rng: np.random.Generator) -> Touches:
 
     A rotary axis turns from pose to pose to where it stood in another pose. A standard is placed
     where another set-up was, one coordinate like this, the next like that, and the linear axes
-    follow; without one, the linear axes move as the rotary ones do.
+    follow; without one, the linear axes move as the rotary ones do. With fewer set-ups a pose
+    touches another place of a larger body: what its alignment leaves open turns all of it.
     """
     chain = touches.chain
     q = (touches.q if touches.commanded is None else touches.commanded).copy()
@@ -98,22 +99,28 @@ def other_places(touches: Touches, rng: np.random.Generator) -> Touches:
     moved = chain.rotary_axes if is_standing else chain.axes
     for k in map(chain.axis_index, moved):
         q[:, k] = _elsewhere(q[:, k], poses, rng)
-    if not is_standing:
-        there = replace(touches, q=q, commanded=None)
-        return replace(there, point=there.ball_artefact - touches.radius[:, None] * touches.normal)
     setups = _labels(touches, np.zeros_like(touches.pose))
-    at = touches.point_table
-    label = setups if setups.max() + 1 >= MIN_BLOCKS else poses
-    point = np.column_stack([_elsewhere(at[:, k], label, rng) for k in range(LINEAR)])
-    target = point + touches.radius[:, None] * touches.normal_table
-    return replace(touches, q=inverse_linear(chain, target, q, touches.target), commanded=None)
+    is_placed = is_standing and setups.max() + 1 >= MIN_BLOCKS
+    if is_standing:
+        at, label = touches.point_table, setups if is_placed else poses
+        point = np.column_stack([_elsewhere(at[:, k], label, rng) for k in range(LINEAR)])
+        target = point + touches.radius[:, None] * touches.normal_table
+        q = inverse_linear(chain, target, q, touches.target)
+    there = replace(touches, q=q, commanded=None)
+    if is_placed:
+        return there
+    return replace(there, point=there.ball_artefact - touches.radius[:, None] * touches.normal)
 
 
 def _elsewhere(values: Array, label: IntArray, rng: np.random.Generator) -> Array:
-    """Values of labelled rows, each label moved to where another one lay, (N,)."""
+    """Values of labelled rows, each label moved to where another one lay within all, (N,)."""
     count = np.bincount(label)
     middle = np.bincount(label, values) / count
-    return values + (middle[rng.integers(len(count), size=len(count))] - middle)[label]
+    low, high = np.full((2, len(count)), [[np.inf], [-np.inf]])
+    np.minimum.at(low, label, values)
+    np.maximum.at(high, label, values)
+    step = middle[rng.integers(len(count), size=len(count))] - middle
+    return values + np.clip(step, values.min() - low, values.max() - high)[label]
 
 
 def _labels(touches: Touches, pose: IntArray) -> IntArray:
