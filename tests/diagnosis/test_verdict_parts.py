@@ -6,7 +6,14 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from matstd.diagnosis.accuracy import Repeatability, Scatter, other_places, promise, repeatability
+from matstd.diagnosis.accuracy import (
+    Repeatability,
+    Scatter,
+    machine_variance,
+    other_places,
+    promise,
+    repeatability,
+)
 from matstd.diagnosis.answer import diagnose
 from matstd.diagnosis.answer.parts import verdict_parts
 from matstd.diagnosis.answer.steps import Step
@@ -125,6 +132,21 @@ def test_other_places_are_consistent_touches(case):
         spread = np.ptp(moved[there.setup == number], axis=0)
         assert spread == pytest.approx(np.zeros(3), abs=0.2)
     assert np.ptp(there.q, axis=0).max() > 0.0
+
+
+def test_a_turn_of_the_one_set_up_is_no_error_elsewhere(case):
+    """An alignment takes up a turn of the workpiece, 100 urad, at any place of it and any pose."""
+    run = case(1, "hsm600u").run
+    one = run[run.touches.setup == 0].touches
+    there = other_places(one, np.random.default_rng(0))
+    box = one.point_table.min(axis=0) - 1e-9, one.point_table.max(axis=0) + 1e-9
+    assert np.all((there.point_table >= box[0]) & (there.point_table <= box[1]))
+    assert np.abs(there.q - one.q).max() > 10.0
+    turn = Model(one.chain, (parse_effect("location(EA0w)", one.chain),))
+    alone = turn.columns(there)[:, 0] * 1e-4
+    left = machine_variance(there, turn, np.array([[1e-4]]), np.full(len(one), UM))
+    assert np.std(alone) > 3.0 * UM
+    assert np.sqrt(left.max()) < 0.1 * UM
 
 
 def test_a_promise_elsewhere_is_at_least_the_one_here(hidden):
