@@ -27,11 +27,11 @@ Progress = Callable[[float, str], None]
 
 BLOCK = 256  # columns that are projected at a time
 MAX_GRID_POINTS = 1000  # most points of the grid of one effect's inner parameters
-MAX_KEPT_NUMBERS = 12_000_000  # numbers of raw columns that are kept of a run, 96 MB
+KEPT_BELOW = 2000  # touches of a run up to which raw columns are kept, some 100 MB
 
 _RAW: WeakKeyDictionary[Touches, dict[tuple[Effect, ...], Array]] = WeakKeyDictionary()
-"""Raw columns of blocks of effects: every turn of a search asks for the same ones, and the model
-that is projected out of them differs by a few gross errors."""
+"""Raw columns of grids: every turn of a search asks for the same ones, while the model that is
+projected out of them differs by a few gross errors."""
 
 
 def quiet(share: float, doing: str) -> None:
@@ -108,16 +108,14 @@ class ResidualSpace:
         """Whitened columns of effects, scaled by their prior, (N, K)."""
         return self.whitened(columns(effects, self.touches), effects)
 
-    def kept_columns(self, effects: Sequence[Effect]) -> Array:
-        """The same, worked out once for every turn of a search."""
-        key = tuple(effects)
-        if len(key) == 1 or not all(isinstance(e, Hashable) for e in key):
-            return self.columns(key)
+    def kept_columns(self, grid: "Grid") -> Array:
+        """The same of a candidate at the points of its grid, worked out once for a run."""
+        if len(self.touches) > KEPT_BELOW or not isinstance(grid.effect, Hashable):
+            return self.columns(grid.variants)
         kept = _RAW.setdefault(self.touches, {})
-        C = kept[key] if key in kept else columns(key, self.touches)
-        if key not in kept and sum(map(np.size, kept.values())) + C.size <= MAX_KEPT_NUMBERS:
-            kept[key] = C
-        return self.whitened(C, key)
+        if grid.variants not in kept:
+            kept[grid.variants] = columns(grid.variants, self.touches)
+        return self.whitened(kept[grid.variants], grid.variants)
 
     def whitened(self, C: Array, effects: Sequence[Effect]) -> Array:
         """Raw columns of effects (all touches, K) whitened and scaled by their prior, (N, K)."""
@@ -272,11 +270,15 @@ def signatures(
     widths = [len(e.parameters) for e in variants]
     start = np.concatenate([[0], np.cumsum(widths)]).astype(np.int64)
     C = np.empty((len(complement.residual), int(start[-1])), order="F")
-    size = np.empty(int(start[-1]))
+    raw = C[: len(complement.u)]
+    first = 0
+    for grid in grids:
+        own = complement.kept_columns(grid)
+        raw[:, first : first + own.shape[1]] = own
+        first += own.shape[1]
+    size = np.linalg.norm(raw, axis=0)
     for first, last in blocks(variants):
-        raw = complement.kept_columns(variants[first:last])
-        size[start[first] : start[last]] = np.linalg.norm(raw, axis=0)
-        C[:, start[first] : start[last]] = complement.project(raw)
+        C[:, start[first] : start[last]] = complement.project(raw[:, start[first] : start[last]])
         progress(last / len(variants), "signatures of effects")
     return Signatures(
         complement=complement,

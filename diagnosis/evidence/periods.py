@@ -19,9 +19,9 @@ from matstd.diagnosis.evidence.effect_signatures import (
 from matstd.twin.frames import Array
 from matstd.twin.model import Effect, Inner, Tunable, columns, is_tunable
 
-MAX_KEPT = 300  # periods of a long scan that get a signature
+MAX_KEPT = 100  # periods of a long scan that get a signature
 
-MAX_COMPLETE_SCAN = 1_000_000
+MAX_COMPLETE_SCAN = 200_000
 """Touches times periods up to which every period gets a signature, 16 MB; no spectrum that ignores
 the model then selects among them."""
 
