@@ -90,7 +90,7 @@ def other_places(touches: Touches, rng: np.random.Generator) -> Touches:
     A rotary axis turns from pose to pose to where it stood in another pose. A standard is placed
     where another set-up was, one coordinate like this, the next like that, and the linear axes
     follow; without one, the linear axes move as the rotary ones do. With fewer set-ups a pose
-    touches another place of a larger body: what its alignment leaves open turns all of it.
+    touches another place of the same body: what its alignment leaves open turns all of it.
     """
     chain = touches.chain
     q = (touches.q if touches.commanded is None else touches.commanded).copy()
@@ -103,7 +103,8 @@ def other_places(touches: Touches, rng: np.random.Generator) -> Touches:
     is_placed = is_standing and setups.max() + 1 >= MIN_BLOCKS
     if is_standing:
         at, label = touches.point_table, setups if is_placed else poses
-        point = np.column_stack([_elsewhere(at[:, k], label, rng) for k in range(LINEAR)])
+        moved_at = (_elsewhere(at[:, k], label, rng, not is_placed) for k in range(LINEAR))
+        point = np.column_stack([*moved_at])
         target = point + touches.radius[:, None] * touches.normal_table
         q = inverse_linear(chain, target, q, touches.target)
     there = replace(touches, q=q, commanded=None)
@@ -112,15 +113,23 @@ def other_places(touches: Touches, rng: np.random.Generator) -> Touches:
     return replace(there, point=there.ball_artefact - touches.radius[:, None] * touches.normal)
 
 
-def _elsewhere(values: Array, label: IntArray, rng: np.random.Generator) -> Array:
-    """Values of labelled rows, each label moved to where another one lay within all, (N,)."""
+def _elsewhere(
+    values: Array, label: IntArray, rng: np.random.Generator, is_inside: bool = False
+) -> Array:
+    """Values of labelled rows, each label moved to where another one lay, (N,).
+
+    Args:
+        is_inside: Whether it stays within the range of all values.
+    """
     count = np.bincount(label)
     middle = np.bincount(label, values) / count
-    low, high = np.full((2, len(count)), [[np.inf], [-np.inf]])
-    np.minimum.at(low, label, values)
-    np.maximum.at(high, label, values)
     step = middle[rng.integers(len(count), size=len(count))] - middle
-    return values + np.clip(step, values.min() - low, values.max() - high)[label]
+    if is_inside:
+        low, high = np.full((2, len(count)), [[np.inf], [-np.inf]])
+        np.minimum.at(low, label, values)
+        np.maximum.at(high, label, values)
+        step = np.clip(step, values.min() - low, values.max() - high)
+    return values + step[label]
 
 
 def _labels(touches: Touches, pose: IntArray) -> IntArray:
