@@ -171,7 +171,7 @@ def _result(
     repeats = repeatability(last)
     repeat = to_repeat(last, repeats)
     named = [s.effect for s in steps[1:] if s.effect is not None]
-    faults = description_faults(steps[0].fit, progress, named)
+    faults = description_faults(steps[0].fit, progress, named, last)
     geometry = learnt_geometry(
         last, task.prior if task.is_known else None, steps[0].fit if len(steps) > 1 else None
     )

@@ -81,17 +81,21 @@ class _Trial:
 
 
 def description_faults(
-    before: Fit, progress: Progress = quiet, beside: Sequence[Effect] = ()
+    before: Fit,
+    progress: Progress = quiet,
+    beside: Sequence[Effect] = (),
+    after: Fit | None = None,
 ) -> tuple[DescriptionFault, ...]:
     """Mistakes in the description of a run or its machine that make it fit; usually none.
 
     Args:
         before: The fit of the ordinary model.
         beside: Effects that were found, free in every trial: what a backlash explains is no zero.
+        after: The fit with them: where it is an ordinary one, no axis runs the other way.
     """
     run = before.run
     named = [_clock(before)] if has_minutes_for_seconds(run) else []
-    excess = max(before.widened, before.noise.factor)
+    excess = min(max(fit.widened, fit.noise.factor) for fit in (before, after or before))
     is_absurd = excess > POLICY.mistake_suspected or unit_mistake(before) is not None
     few = with_setups_placed(_few(run))
     right = _evidence(few, (), np.zeros(0), beside)[0] - _moved_setups(
