@@ -23,7 +23,7 @@ off the other way on the rest, since the model has its constant."""
 
 MAX_BINS = 16  # bins of a variable between whose borders a region begins and ends
 MAX_LABELS = 40  # features or set-ups beyond which they are not tried one by one
-MAX_STARTS = 40  # carriers with one variable that are looked at with a second and a third
+MAX_STARTS = 24  # carriers with one variable that are looked at with a second and a third
 
 
 class Side(Enum):
