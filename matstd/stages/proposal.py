@@ -271,7 +271,7 @@ def workspace(
     corners = corners @ fixed_xyz(np.array(turn) * DEG).T
     rotary = [a for a in chain.programmed_axes if chain.link(a).kind == "rotary"]
     ends = {a: np.clip(chain.link(a).range, -180.0 * DEG, 180.0 * DEG) for a in rotary}
-    poses = list(product(*(np.linspace(*ends[a], 7) for a in rotary)))
+    poses = list(product(*(np.linspace(ends[a][0], ends[a][1], 7) for a in rotary)))
     q = np.zeros((len(poses) * len(corners), len(chain.axes)))
     q[:, [chain.axis_index(a) for a in rotary]] = np.repeat(poses, len(corners), axis=0)
     points = np.tile(corners, (len(poses), 1))

@@ -27,7 +27,7 @@ PLAN: Plan = {
 benchmarks/progress_estimate.py` measures them again). CAD, times and sheets are made by the second
 core: their stages wait for it."""
 
-LINEAR_PLAN = PLAN | {"candidates": 3.0, "artefacts of balls": 8.0, "faces": 9.0}
+LINEAR_PLAN = {**PLAN, "candidates": 3.0, "artefacts of balls": 8.0, "faces": 9.0}
 """The same without a rotary axis, where a standard has no table poses to choose."""
 
 
