@@ -4,9 +4,9 @@
     python benchmarks/progress_estimate.py --replay events.json ...
 
 Runs every design (minutes each) and records when its stages report: by the clock, and as two idle
-cores would have run it. There a step takes the processor time of this process or that of those
-which it has begun, whichever is larger. Prints the seconds of every stage, and the estimate at half
-time over what was left.
+cores would have run it. There a step takes the longest processor time of this process and of those
+which it has begun, and half of their sum at least. Prints the seconds of every stage, and the
+estimate at half time over what was left.
 """
 
 import argparse
@@ -44,16 +44,16 @@ EVERY = 1.0  # seconds between two looks at the time left
 def recorded(path: Path) -> tuple[bool, list[Event]]:
     """Whether the machine of a project has a rotary axis, and the reports of its design."""
     events, used, begun = list[Event](), dict[int, float](), time.monotonic()
-    spent = [0.0, 0.0]
 
     def note(stage: str, done: int, total: int) -> None:
-        for child in psutil.Process().children(recursive=True):
-            used[child.pid] = sum(child.cpu_times()[:2])
-        now = [time.process_time(), sum(used.values())]
-        step = max(after - before for after, before in zip(now, spent, strict=True))
-        spent[:] = now
+        here, before = psutil.Process(), used.copy()
+        for process in (here, *here.children(recursive=True)):
+            used[process.pid] = sum(process.cpu_times()[:2])
+        steps = [now - before.get(pid, 0.0) for pid, now in used.items()]
+        step = max(*steps, 0.5 * sum(steps)) if events else 0.0
         idle = step + (events[-1].idle if events else 0.0)
-        events.append(Event(time.monotonic() - begun, idle, stage, done, total))
+        clock = time.monotonic() - begun
+        events.append(Event(clock=clock, idle=idle, stage=stage, done=done, total=total))
 
     with tempfile.TemporaryDirectory() as folder:
         project = matstd.Project.read(path)
