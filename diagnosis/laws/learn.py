@@ -35,8 +35,7 @@ MIN_EXPLAINED = 4
 """So many gross errors, and half of them, must follow a law that is learnt from them: a step beyond
 which 8 of 780 touches are stands out like 8 chips. Accidents have no law in common."""
 
-FAR_GROSS = 2.0
-"""Gross errors so many times as large as the middle one are not counted among those."""
+FAR_GROSS = 2.0  # gross errors so many times as large as the middle one are not counted among those
 
 STAND_IN = ("level", "time")
 """Natures of variables that may stand for a driver that was not recorded: what was commanded, a

@@ -39,8 +39,7 @@ from matstd.twin.record import Run
 TOP_SINGLES, TOP_PAIRS, TOP_SQUARES = 14, 6, 2
 """Carriers with one variable, with two, and with one twice, for which formulas are looked for."""
 
-SQUARES = 4
-"""Products of two shapes of one variable that are refined."""
+SQUARES = 4  # products of two shapes of one variable that are refined
 
 MIN_SHARE_SINGLE, MIN_SHARE_PAIR = 0.4, 0.6
 """Share of the best evidence of a curve from which a formula is looked for."""

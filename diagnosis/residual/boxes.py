@@ -128,8 +128,7 @@ def _round_between(low: float, high: float) -> float:
 
 
 Bins = tuple[int, int]
-Box = dict[int, Bins]
-"""First and last bin of every variable that bounds a region, by its number."""
+Box = dict[int, Bins]  # first and last bin of every variable that bounds a region, by its number
 
 
 class Measure(Protocol):
