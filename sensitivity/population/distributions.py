@@ -2,9 +2,10 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import get_args
 
 from matstd.twin.errors import BadValue, DesignError
-from matstd.twin.machine import SHAPES, Chain, Family, ShapeName, Symbol, error_class
+from matstd.twin.machine import Chain, Family, ShapeName, Symbol, error_class
 
 CLASSES = ("linear_translation", "linear_rotation", "rotary_translation", "rotary_rotation")
 """Classes of errors that vary with a reading; all others are constants."""
@@ -21,8 +22,8 @@ class Mix:
     weights: tuple[float, ...] = ()  # chance of each shape, in any unit; none for equal chances
 
     def __post_init__(self) -> None:
-        if not self.shapes or any(s not in SHAPES for s in self.shapes):
-            known = ", ".join(SHAPES)
+        if not self.shapes or not set(self.shapes) <= set(get_args(ShapeName)):
+            known = ", ".join(get_args(ShapeName))
             raise BadValue("shapes", list(self.shapes), f"at least one of {known}")
         if len(set(self.shapes)) < len(self.shapes):
             raise BadValue("shapes", list(self.shapes), "each once, with a weight")

@@ -14,7 +14,7 @@ from matstd.sensitivity.first_order import Workspace
 from matstd.twin.effects import ComponentError, component
 from matstd.twin.errors import DesignError, OutsideTravel, UnknownAxis
 from matstd.twin.frames import Array
-from matstd.twin.machine import DEFAULT_RANGES, Chain, error_class
+from matstd.twin.machine import Chain, Ranges
 from matstd.twin.model import Effect, Model, traits
 from matstd.twin.record import at_poses
 from matstd.twin.units import UM, URAD
@@ -176,7 +176,7 @@ def axis_errors(chain: Chain, axis: str) -> list[tuple[ComponentError, Array]]:
             out.append((component(chain, name, "linear"), np.array([size])))
             continue
         phase = _QUARTER if i == radial[1] else 0.0
-        low = DEFAULT_RANGES[error_class(chain, chain.symbol(name))][0]
+        low = Ranges().of(chain, chain.symbol(name))[0]
         size = 10.0 * UM if i in radial else low
         out.append((component(chain, name, "sinusoidal", phase=phase), np.array([size])))
     return out

@@ -4,12 +4,13 @@ import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import get_args
 
 import numpy as np
 from numpy.polynomial.chebyshev import chebvander
 
 from matstd.twin.fields import check_count, component_symbol, components_of, moving_axes, refusal
-from matstd.twin.machine import SHAPES, Chain, Ranges, ShapeName, Symbol, shape
+from matstd.twin.machine import Chain, Ranges, ShapeName, Symbol, shape
 from matstd.twin.model import Amounts, Declared, Effect, Kind, Parameter
 from matstd.twin.record import Touches
 from matstd.twin.units import DEG
@@ -127,9 +128,10 @@ def make(chain: Chain, arguments: Sequence[str]) -> Effect:
         if 1 <= lowest <= highest <= HIGHEST:
             return higher_order(chain, symbol, highest, lowest)
     match = _SHAPE.match(rest)
-    word = next((s for s in SHAPES if match is not None and s == match.group(1)), None)
+    shapes: tuple[ShapeName, ...] = get_args(ShapeName)
+    word = next((s for s in shapes if match is not None and s == match.group(1)), None)
     if match is None or word is None:
-        expected = f"a degree of 1 to {HIGHEST}, two such as 3-4, or one of {', '.join(SHAPES)}"
+        expected = f"a degree of 1 to {HIGHEST}, two such as 3-4, or one of {', '.join(shapes)}"
         raise refusal(KIND.usage, arguments, expected)
     periods, phase = float(match[2] or 1.0), float(match[3] or 0.0) * DEG
     return ComponentError(symbol, word, periods, phase, sd=Ranges().sd(chain, symbol))

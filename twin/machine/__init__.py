@@ -22,7 +22,6 @@ from matstd.twin.machine.kinematics import (
 from matstd.twin.machine.link import Link
 from matstd.twin.machine.ranges import (
     DEFAULT_RANGES,
-    SHAPES,
     Ranges,
     ShapeName,
     error_class,
@@ -32,7 +31,7 @@ from matstd.twin.machine.ranges import (
 from matstd.twin.machine.symbols import LETTERS, Family, Symbol, parse_symbol
 
 __all__ = [
-    "DEFAULT_RANGES", "LETTERS", "SHAPES", "Axis", "Chain", "Contribution", "Family", "Link",
+    "DEFAULT_RANGES", "LETTERS", "Axis", "Chain", "Contribution", "Family", "Link",
     "Ranges", "Reach", "ShapeName", "Symbol", "Where", "checked_readings", "error_class",
     "exact_tip", "inverse_linear", "linear_directions", "linear_motion", "make_chain",
     "parse_symbol", "reach", "shape", "sine_argument", "table_to_tool", "tip",

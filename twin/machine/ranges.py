@@ -14,7 +14,6 @@ from matstd.twin.machine.symbols import Family, Symbol
 from matstd.twin.units import UM, URAD
 
 ShapeName = Literal["constant", "linear", "parabolic", "sinusoidal"]
-SHAPES: tuple[ShapeName, ...] = ("constant", "linear", "parabolic", "sinusoidal")
 
 
 def sine_argument(q: Array, link: Link, periods: float = 1.0) -> Array:
