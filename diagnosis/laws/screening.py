@@ -6,6 +6,7 @@ curve knows no formula, so that nothing about the law is assumed but that it is 
 corners; what is too quick for it is scanned as a sine.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
 from typing import NamedTuple
@@ -196,20 +197,30 @@ def rough_shapes(space: Space, field: Field, each: int) -> list[Rough]:
             angle = 2.0 * np.pi * x[:, None] * f
             along = (R.T @ np.sin(angle)) ** 2 + (R.T @ np.cos(angle)) ** 2  # (carriers, F)
             power = along / (0.5 * share * S.sum(axis=0)[:, None] + MIN_OWN)
-            best = enumerate(np.argmax(power, axis=1))
-            waves += [
-                Rough(owner[i], driver, "sine", (float(1.0 / f[j]),), power[i, j]) for i, j in best
-            ]
+            waves += _best_of_carriers(owner, driver, "sine", 1.0 / f[:, None], power)
         for word in LOOPS if driver.name not in ON_BALL else ():
             if word in WORDS[driver.nature]:
                 points = grid(SHAPES[word], driver, x)
                 H = np.stack([SHAPES[word].values(x, *p)[0] for p in points], 1)
                 power = (R.T @ H) ** 2 / (share * (S.T @ H**2) + MIN_OWN)
-                best = enumerate(np.argmax(power, axis=1))
-                loops += [
-                    Rough(owner[i], driver, word, tuple(points[j]), power[i, j]) for i, j in best
-                ]
+                loops += _best_of_carriers(owner, driver, word, points, power)
     return [r for kind in (waves, loops) for r in sorted(kind, key=lambda r: -r.explained)[:each]]
+
+
+def _best_of_carriers(
+    owner: Sequence[Bearer], driver: Driver, word: str, places: Array, power: Array
+) -> list[Rough]:
+    """Every column of a carrier at the places (G, K) where it explains most: power (columns, G)."""
+    return [
+        Rough(
+            bearer=owner[i],
+            driver=driver,
+            word=word,
+            places=tuple(places[j].tolist()),
+            explained=power[i, j],
+        )
+        for i, j in enumerate(np.argmax(power, axis=1))
+    ]
 
 
 def _quick_frequencies(driver: Driver, x: Array) -> Array:
