@@ -49,25 +49,29 @@ class Base:
 
 
 @dataclass(frozen=True, eq=False)
-class _Draw:
-    """A standard, the possible touches on its balls, a quick choice and its value."""
-
-    standard: Standard
-    poses: Array
-    tried: Requests
-    chosen: Mask
-    value: float
-
-
-@dataclass(frozen=True, eq=False)
 class Identifying:
-    """A standard with the possible touches on its balls, and the chosen ones."""
+    """A standard with the possible touches on its balls, and the chosen ones.
+
+    Attributes:
+        nearness: How near the choice is to the best one; a quick choice has no bound.
+    """
 
     standard: Standard
     poses: Array
     tried: Requests
     chosen: Mask
     nearness: Certificate
+
+    @property
+    def value(self) -> float:
+        """Of the criterion, smaller is better."""
+        return self.nearness.value
+
+    def searched(self, criterion: Criterion, options: TouchOptions) -> "Identifying":
+        """The same standard after the whole search; its choice stays where none is better."""
+        here = criterion.on(replace(self.standard, patches=()))
+        chosen, nearness = chosen_touches_on(here, self.tried, options, begin=self.chosen)
+        return replace(self, chosen=chosen, nearness=nearness)
 
 
 def ball_bases(
@@ -116,19 +120,11 @@ def identifying_choices(
     """
     drawn, choice = _best_draw(criterion, bodies, bases, options, progress), options.choice
     progress("faces", _MAX_REDRAWS + 1, _MAX_REDRAWS + 2)
-    here = criterion.on(replace(drawn.standard, patches=()))
-    chosen, nearness = chosen_touches_on(here, drawn.tried, choice, begin=drawn.chosen)
-    first = Identifying(
-        standard=drawn.standard,
-        poses=drawn.poses,
-        tried=drawn.tried,
-        chosen=chosen,
-        nearness=nearness,
-    )
-    if first.nearness.value <= _NEGLIGIBLE_COST * bases[0].value:
+    first = drawn.searched(criterion, choice)
+    if first.value <= _NEGLIGIBLE_COST * bases[0].value:
         return [first]
     other = _with_moved_balls(criterion, places, drawn.standard, all_poses, choice)
-    if other is None or other.nearness.value >= first.nearness.value:
+    if other is None or other.value >= first.value:
         return [first]
     return [other, first]
 
@@ -139,7 +135,7 @@ def _best_draw(
     bases: list[Base],
     options: PlacementOptions,
     progress: Progress,
-) -> _Draw:
+) -> Identifying:
     """The best of a few draws; a single one where it costs little or nothing compares."""
     progress("faces", 0, _MAX_REDRAWS + 2)
     best, alone = _draw(criterion, bodies, bases, options), bases[0].value
@@ -155,12 +151,12 @@ def _best_draw(
 
 def _draw(
     criterion: Criterion, bodies: BodyChoice, bases: list[Base], options: PlacementOptions
-) -> _Draw:
+) -> Identifying:
     """The best balls that leave room for the faces, and the touches that remain on them.
 
     The next base is tried only where some balls had to be dropped.
     """
-    best: _Draw | None = None
+    best: Identifying | None = None
     choice, refused = options.choice, NotReachable("no ball")
     for base in bases[:_MAX_BASES]:
         poses = np.unique(base.touches.rotary, axis=0)
@@ -170,12 +166,14 @@ def _draw(
         here, reach = criterion.on(replace(standard, patches=())), criterion.reach
         tried = touches_to_choose_from(reach, standard, standard.spheres, poses, choice.touches)
         try:
-            chosen, value = repaired_touches(here, tried, base.touches, choice)
+            chosen, nearness = repaired_touches(here, tried, base.touches, choice)
         except NotReachable as error:
             refused = error
             continue
-        if best is None or value < best.value:
-            best = _Draw(standard=standard, poses=poses, tried=tried, chosen=chosen, value=value)
+        if best is None or nearness.value < best.value:
+            best = Identifying(
+                standard=standard, poses=poses, tried=tried, chosen=chosen, nearness=nearness
+            )
         if len(standard.spheres) == len(base.balls):
             break
     if best is None:

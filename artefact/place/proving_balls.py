@@ -15,11 +15,10 @@ from matstd.artefact.brief import PlacementOptions
 from matstd.artefact.layout import Blank, balls_fit, holes_on
 from matstd.artefact.place.body_choice import assembled
 from matstd.artefact.place.identifying import Base, Identifying
-from matstd.artefact.reach import Mask, Requests
+from matstd.artefact.reach import Requests
 from matstd.artefact.worth import (
     BallPlaces,
     Criterion,
-    chosen_touches_on,
     repaired_touches,
     touches_to_choose_from,
 )
@@ -47,12 +46,12 @@ def balls_alone(
         for count in range(len(beside), 0, -1):
             try:
                 made = _standing([*base.balls, *beside[:count]], places.blank, options)
-                tried, begin, value = _quick_choice(criterion, made, base, options)
+                found = _quick_choice(criterion, made, base, options)
             except (NotBuildable, NotReachable) as error:
                 refused.append(str(error))
                 continue
-            if count == 1 or not base.value or value <= _MOST_COST * base.value:
-                return _identifying(criterion, made, base, tried, begin, options)
+            if count == 1 or not base.value or found.value <= _MOST_COST * base.value:
+                return found.searched(criterion, options.choice)
     why = refused[-1] if refused else "no place is left"
     raise NotBuildable(f"no balls that prove beside those that identify: {why}")
 
@@ -109,23 +108,10 @@ def _most_apart(balls: Sequence[DatumSphere], places: BallPlaces, count: int) ->
 
 def _quick_choice(
     criterion: Criterion, made: Standard, base: Base, options: PlacementOptions
-) -> tuple[Requests, Mask, float]:
-    """Touches on the best balls that the new ones leave, a choice of them, and its value."""
-    own = tuple(ball for ball in made.spheres if not ball.proves)
-    poses, count = np.unique(base.touches.rotary, axis=0), options.choice.touches
-    tried = touches_to_choose_from(criterion.reach, made, own, poses, count)
-    return tried, *repaired_touches(criterion.on(made), tried, base.touches, options.choice)
-
-
-def _identifying(
-    criterion: Criterion,
-    made: Standard,
-    base: Base,
-    tried: Requests,
-    begin: Mask,
-    options: PlacementOptions,
 ) -> Identifying:
-    """The touches of a quick choice, improved."""
-    poses = np.unique(base.touches.rotary, axis=0)
-    chosen, nearness = chosen_touches_on(criterion.on(made), tried, options.choice, begin=begin)
+    """Touches on the best balls that the new ones leave, and a quick choice of them."""
+    own = tuple(ball for ball in made.spheres if not ball.proves)
+    poses, choice = np.unique(base.touches.rotary, axis=0), options.choice
+    tried = touches_to_choose_from(criterion.reach, made, own, poses, choice.touches)
+    chosen, nearness = repaired_touches(criterion.on(made), tried, base.touches, choice)
     return Identifying(standard=made, poses=poses, tried=tried, chosen=chosen, nearness=nearness)

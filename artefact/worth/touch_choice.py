@@ -256,14 +256,14 @@ def chosen_touches_on(
 
 def repaired_touches(
     criterion: Criterion, tried: Requests, like: Requests, options: TouchOptions
-) -> tuple[Mask, float]:
+) -> tuple[Mask, Certificate]:
     """A choice made where nothing stood in the way: what is left of it, filled up and exchanged.
 
     Args:
         like: That were chosen on the same features, whatever these were called.
 
     Returns:
-        The choice, (N,), and its value.
+        The choice, (N,), and its value; no bound is sought.
 
     Raises:
         NotReachable: Too few touches can be made.
@@ -273,7 +273,9 @@ def repaired_touches(
     choice = Selection(criterion.objective, criterion.rows(tried), left & (left.sum() <= n))
     fill(choice, n, quotas)
     exchange(choice, quotas, most=n // 2)
-    return choice.chosen, choice.value
+    return choice.chosen, Certificate(
+        candidates=len(tried), count=n, value=choice.value, bound=0.0, shares=True
+    )
 
 
 def _pose_quotas(tried: Requests, options: TouchOptions) -> tuple[Quota, ...]:
