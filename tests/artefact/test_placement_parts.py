@@ -33,6 +33,7 @@ from matstd.artefact.worth.attribution import error_shares
 from matstd.artefact.worth.potential import residual_after
 from matstd.artefact.worth.touch_choice import TouchOptions, chosen_touches_on, repaired_touches
 from matstd.artefact.worth.touch_criterion import random_touches
+from matstd.twin.compute import silent
 from matstd.twin.errors import NotBuildable, NotReachable
 from matstd.twin.frames import fixed_xyz, pose
 from matstd.twin.machine.chain import Axis, make_chain
@@ -357,7 +358,7 @@ def test_a_draw_of_faces_that_fails_costs_nothing_of_what_the_first_found(monkey
 
         monkeypatch.setattr(identifying, "_draw", one)
         base = SimpleNamespace(value=alone)
-        return identifying._best_draw(None, None, [base], None).value, len(list(ends))
+        return identifying._best_draw(None, None, [base], None, silent).value, len(list(ends))
 
     alone = 1.0
     assert drawn(1.5, None, 1.3, 1.4, None, 1.35, 1.2) == (1.3, 1)  # no more than six
