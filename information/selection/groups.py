@@ -11,7 +11,7 @@ from matstd.twin.compute import blocks
 from matstd.twin.frames import Array
 from matstd.twin.record import IntArray
 
-_GROUPS_A_BLOCK = 100
+_GROUPS_A_BLOCK, _ROWS_A_BLOCK = 10, 4000  # looked at together: in the cache
 
 
 def best_groups(
@@ -94,11 +94,13 @@ class _Groups:
         tangents = self.criterion.tangents(information)
         unit = np.eye(self.criterion.size)
         # takes a third of the time of solving for every row
-        reaches = [W @ np.linalg.solve(p + information, unit) for p in self.criterion.prior]
-        gain = np.zeros(len(W))
-        for reach, tangent in zip(reaches, tangents, strict=True):
-            leverage = np.einsum("nr,nr->n", reach, W)
-            gain += tangent.fall(tangent.numerators(reach, leverage), leverage)
+        inverses = [np.linalg.solve(p + information, unit) for p in self.criterion.prior]
+        reaches, gain = np.empty((len(inverses), *W.shape)), np.zeros(len(W))
+        for reach, inverse, tangent in zip(reaches, inverses, tangents, strict=True):
+            for some in blocks(len(W), _ROWS_A_BLOCK):
+                mine = np.matmul(W[some], inverse, out=reach[some])
+                leverage = np.einsum("nr,nr->n", mine, W[some])
+                gain[some] += tangent.fall(tangent.numerators(mine, leverage), leverage)
         top = self._most_useful(edges, gain)
         fall = np.zeros(len(top))
         for reach, tangent in zip(reaches, tangents, strict=True):
