@@ -31,6 +31,7 @@ class LawPolicy:
     # temperatures 19 and more
     open_driver: float = 5.0
     most_laws: int = 3  # laws learnt one after the other
+    most_factors: int = 2  # shapes of which a law is the product
     most_turns: int = 2  # how often each of several laws is searched anew with the others in place
     most_members: int = 6  # most laws over which a prediction averages
     most_rivals: int = 8  # rivals that are reported

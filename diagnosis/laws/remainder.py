@@ -50,7 +50,9 @@ def learn_remainder(
     rest, instead = policy, policy
     if not is_left:
         rest = replace(policy, most_laws=0)
-        instead = replace(policy, most_laws=min(policy.most_laws, len(found)))
+        # these are functions of one variable each, and nothing is left of another one
+        most = min(policy.most_laws, len(found))
+        instead = replace(policy, most_laws=most, most_factors=1)
     ground = Ground.of(end.run)
     beside = learn_beside(Beginning.of_fit(end, base, known), rest, True, ground)
     if found:

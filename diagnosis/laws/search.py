@@ -102,12 +102,15 @@ def search_law(space: Space, ground: Ground, policy: LawPolicy) -> Searched:
     grids = ground.grids
     field = grids.field
     one = by_evidence(space, ground.curves)
-    two = by_evidence(space, ground.surfaces, MIN_SHARE_SINGLE * one[0].evidence)
+    has_products = policy.most_factors > 1
+    least = MIN_SHARE_SINGLE * one[0].evidence
+    two = by_evidence(space, ground.surfaces, least) if has_products else []
     found: list[Candidate] = []
     for f in _worth(one, two, MIN_SHARE_SINGLE, TOP_SINGLES):
         found += single_formulas(space, grids, f.bearer, f.drivers[0], 4)
     found += _rough(space, grids)
-    if not found or max(c.score for c in found) < one[0].evidence + CLEAR:
+    best = max((c.score for c in found), default=-np.inf)
+    if has_products and best < one[0].evidence + CLEAR:
         for f in _worth(one, two, MIN_SHARE_SINGLE, TOP_SQUARES):
             found += product_formulas(space, grids, f.bearer, (f.drivers[0], f.drivers[0]), SQUARES)
     for f in _worth(_gaining(two, one), one, MIN_SHARE_PAIR, TOP_PAIRS):
