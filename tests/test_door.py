@@ -211,7 +211,7 @@ def test_commands_write_what_the_door_writes(there, unrendered) -> None:
     for name in ("diagnosis.json", "model.toml"):
         assert Path("command", name).read_bytes() == Path("door", name).read_bytes()
     with pytest.raises(matstd.DesignError, match="already exists"):
-        found.save("door")
+        found.page("door")
 
 
 def test_an_argument_is_named_as_it_was_given(there, capsys) -> None:

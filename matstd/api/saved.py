@@ -1,6 +1,8 @@
 """Results that leave files and a page in a folder."""
 
 from abc import ABC, abstractmethod
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import ClassVar
 
@@ -42,12 +44,24 @@ class Saveable(ABC):
             pdf: Print the page into report.pdf, too.
             force: Replace the results of an earlier run.
         """
+        with self._made(folder, pdf, force) as place:
+            self.write(place)
+        return Path(folder)
+
+    def page(self, folder: str | Path, pdf: bool = False, force: bool = False) -> Path:
+        """Write report.html with its pictures and tables into a folder; arguments as of `save`."""
+        with self._made(folder, pdf, force):
+            pass
+        return Path(folder) / "report.html"
+
+    @contextmanager
+    def _made(self, folder: str | Path, pdf: bool, force: bool) -> Iterator[Path]:
+        """A folder that gets the page beside what is written meanwhile, whole or not at all."""
         printed_by = printer() if pdf else None
         with results_folder(folder, force, self.sometimes) as place:
-            self.write(place)
+            yield place
             self.write_page(place)
             print_report(place, printed_by)
-        return Path(folder)
 
     @abstractmethod
     def write(self, folder: Path) -> str:
