@@ -95,7 +95,7 @@ def pair_words(pair: Pair, names: Sequence[str]) -> str:
 
 
 def degree_words(degree: Degree, chain: Chain) -> str:
-    """`straightness of X along Y (EYX): degrees 2 to 5, the last to 0.4 µm`."""
+    """`straightness of X in Y (EYX): degrees 2 to 5, the last to 0.4 µm`."""
     what = in_words(f"geometric({degree.symbol},)", chain).strip()
     link = chain.link(chain.symbol(degree.symbol).link)
     kind = "harmonic" if link.kind == "rotary" else "degree"

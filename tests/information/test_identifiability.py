@@ -109,14 +109,14 @@ def test_words_are_those_worked_by_hand(case):
     name, model, _, found = case
     words = {freedom_words(f, model.chain): f for f in found.freedoms}
     # -EC0Y y in X: over a range of 200 mm each way a linear straightness of -0.2 um a urad
-    straightness = "- 0.2 µm of linear straightness of Y along X (EXY)"
+    straightness = "- 0.2 µm of linear straightness of Y in X (EXY)"
     squareness = f"1 µrad of squareness of Y about Z (EC0Y) = {straightness}"
     assert words[squareness].resolution is Resolution.NEVER
     assert words[squareness].reason is Reason.SQUARENESS
     if name in ("three axes", "table/table"):  # the ball hangs 160 mm below Z, which ends the chain
         tilt = words[
             "1 µrad of linear tilt of Z about Y (EBZ) = "
-            "- 0.16 µm of linear straightness of Z along X (EXZ)"
+            "- 0.16 µm of linear straightness of Z in X (EXZ)"
         ]
         assert tilt.resolved_by == "a second stylus length"
         preset = words["displacement of the tool along Z (EZ0t) = zero position of Z (EZ0Z)"]
@@ -126,7 +126,7 @@ def test_words_are_those_worked_by_hand(case):
         families = in_families(found.freedoms)
         lines = {family_words(family, model.chain): family.count for family in families}
         assert lines[f"roll of Z (ECZ) moves no touch {EACH_SHAPE}"] == len(SHAPES)
-        family = "1 µrad of tilt of Z about Y (EBZ) = - 0.16 µm of straightness of Z along X (EXZ)"
+        family = "1 µrad of tilt of Z about Y (EBZ) = - 0.16 µm of straightness of Z in X (EXZ)"
         assert lines[f"{family} {EACH_SHAPE}"] == len(SHAPES)
         assert sum(lines.values()) == len(found.freedoms)
     if name in ("table/table", "table/head"):  # C ends the chain on the side of the standard

@@ -86,7 +86,7 @@ def test_many_rivals_are_counted_beyond_the_first() -> None:
     many = step("backlash(X)", *(f"geometric(E{c}{a},3)" for c in "XYZ" for a in "XY"))
     assert rival_words(many).endswith("geometric(EYX,3), geometric(EYY,3) and 2 more")
     words = class_words(many)
-    assert "straightness of X along Y, positioning error of Y or 2 more) [backlash(X) or" in words
+    assert "straightness of X in Y, positioning error of Y or 2 more) [backlash(X) or" in words
     assert words.endswith("or one of 6 more]")
 
 

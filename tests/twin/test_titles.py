@@ -72,7 +72,7 @@ def test_every_effect_has_a_title_of_its_own(label) -> None:
     ("symbol", "title"),
     [
         ("EXX", "positioning error of X"),
-        ("EYX", "straightness of X along Y"),
+        ("EYX", "straightness of X in Y"),
         ("EAX", "roll of X"),
         ("EBX", "tilt of X about Y"),
         ("EXC", "radial motion of C along X"),

@@ -57,7 +57,7 @@ class Symbol:
 
     @property
     def title(self) -> str:
-        """In words: `straightness of X along Y`, `squareness of Y about Z`."""
+        """In words: `straightness of X in Y`, `squareness of Y about Z`."""
         axis, letter = self.link, self.link[0]
         is_linear = letter in "XYZUVW"
         is_own = "XYZ"[self.component % 3] == ALONG.get(letter)
@@ -73,8 +73,9 @@ class Symbol:
             return f"positioning error of {axis}"
         if is_own:
             return f"{'roll' if is_linear else 'axial motion'} of {axis}"
-        across = "straightness" if is_linear else "radial motion"
-        return f"{'tilt' if self.is_angular else across} of {axis} {self.motion}"
+        if is_linear and not self.is_angular:
+            return f"straightness of {axis} in {'XYZ'[self.component % 3]}"
+        return f"{'tilt' if self.is_angular else 'radial motion'} of {axis} {self.motion}"
 
 
 def parse_symbol(name: str) -> Symbol | None:
