@@ -42,14 +42,11 @@ def _card(name: str) -> list[str]:
 
     whole = text(name)
     table, errors = tomllib.loads(whole), tomllib.loads(text(name, errors=True))
-    travels = [f"{a} {low:g} to {high:g}" for a, (low, high) in _ranges(table)]
+    ranges = [(axis, *entry["range"]) for axis, entry in table["axis"].items()]
+    travels = [f"{axis} {low:g} to {high:g}" for axis, low, high in ranges]
     known = len(errors) - 1
     return [
         whole.partition("\n")[0].removeprefix("# "),
         f"{table['chain']}; {', '.join(travels)} (mm, degrees)",
         f"{known} published errors" if known else "no published errors",
     ]
-
-
-def _ranges(table: dict[str, dict[str, dict[str, list[float]]]]) -> list[tuple[str, list[float]]]:
-    return [(axis, entry["range"]) for axis, entry in table["axis"].items()]
