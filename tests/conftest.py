@@ -94,10 +94,9 @@ def _as_in_a_test():
 
     A slow machine prints its progress every ten seconds: nothing a test can count on. The workers
     share the cores: nothing is done in a further process, where what a test has patched would not
-    be. Pictures have a fifth of the dots. Regions where a model fails are grown from a fifth of
-    their starts, which were a third of the time of a diagnosis; `diagnosis/test_regions` has them
-    all. The Monte Carlo counts in numpy: its loops take numba half a minute to compile, and
-    `compiled_loops` brings them back for the tests that compare the two.
+    be. Pictures have a fifth of the dots. The Monte Carlo counts in numpy: its loops take numba
+    half a minute to compile, and `compiled_loops` brings them back for the tests that compare the
+    two.
     """
     from matstd.sensitivity.montecarlo import lengths
 
@@ -105,7 +104,6 @@ def _as_in_a_test():
         patch.setattr("matstd.progress.PERIOD", 1e6)
         patch.setattr("matstd.twin.beside.CORES", 1)
         patch.setattr("matstd.report.style.DPI", 60)
-        patch.setattr("matstd.diagnosis.residual.boxes.MAX_STARTS", 8)
         compiled_count = lengths.compiled_count
         patch.setattr(lengths, "compiled_count", lambda: None)
         yield compiled_count

@@ -24,12 +24,6 @@ from matstd.twin.units import UM, URAD
 KEY = (2, "hsm600u")
 
 
-@pytest.fixture(autouse=True)
-def all_starts(monkeypatch):
-    """The search as users have it; other tests begin with a fifth of the boxes."""
-    monkeypatch.setattr("matstd.diagnosis.residual.boxes.MAX_STARTS", 40)
-
-
 class Readings:
     """Readings as a law of the simulator asks for them."""
 
