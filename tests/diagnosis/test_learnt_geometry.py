@@ -31,6 +31,12 @@ def with_link(chain, name, **changes):
     return replace(chain, links=links)
 
 
+def displaced(touches, chain, q):
+    """Where the ball of a chain at some readings is from where it should be, (N,), mm."""
+    true = apply(inverse(touches.T_table_artefact), tip(chain, q, touches.length))
+    return np.einsum("ni,ni->n", touches.normal, true - touches.ball_artefact)
+
+
 @pytest.fixture(scope="module")
 def learnt(case):
     """A function: true chain, readings that are true -> rows by symbol; none for as simulated."""
@@ -40,10 +46,7 @@ def learnt(case):
     def made(chain=None, scale=None):
         moved = np.zeros(len(run))
         if chain is not None or scale is not None:
-            q = t.q if scale is None else t.q * scale
-            true = tip(chain or t.chain, q, t.length)
-            back = inverse(t.T_table_artefact)
-            moved = np.einsum("ni,ni->n", t.normal, apply(back, true) - t.ball_artefact)
+            moved = displaced(t, chain or t.chain, t.q if scale is None else t.q * scale)
         fit = fit_run(replace(run, deviation=run.deviation - moved), ordinary_model(t.chain))
         return fit, {r.symbol: r for r in geometry_rows(fit)}
 
@@ -80,6 +83,20 @@ def test_a_scale_is_found(case, learnt) -> None:
         got = after[symbol].estimate.value - before[symbol].estimate.value
         assert got == pytest.approx(wanted, abs=SHRUNK * 18e-6)
     assert after["EXX"].unit == "1"
+
+
+def test_a_motion_of_a_rotary_axis_is_reported_from_peak_to_valley(case) -> None:
+    """C turns 40 µrad sin C too far, and nothing else is wrong."""
+    run = case(*KEY).run
+    q, c = run.touches.q.copy(), run.touches.chain.axis_index("C")
+    q[:, c] += 40.0 * URAD * np.sin(q[:, c])
+    planted = replace(run, deviation=-displaced(run.touches, run.touches.chain, q))
+    rows = {
+        r.symbol: r for r in geometry_rows(fit_run(planted, ordinary_model(planted.touches.chain)))
+    }
+    assert rows["ECC"].quantity is Quantity.ROTARY_MOTION
+    assert rows["ECC"].is_determined
+    assert rows["ECC"].estimate.value == pytest.approx(80.0 * URAD, rel=0.01)
 
 
 @pytest.mark.parametrize(("symbol", "i"), [("EX0C", 0), ("EY0C", 1), ("EX0B", 0), ("EZ0B", 2)])
