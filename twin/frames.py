@@ -1,9 +1,11 @@
-"""Poses as matrices (..., 4, 4); `T_a_b` takes b coordinates to a coordinates."""
+"""Types of arrays; poses as matrices (..., 4, 4): `T_a_b` takes b coordinates to a coordinates."""
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+Mask = NDArray[np.bool_]
 
 
 def skew(v: Array) -> Array:

@@ -1,9 +1,8 @@
 """Figures as files and results hold them: significant digits, in_um, root mean squares."""
 
 import numpy as np
-from numpy.typing import NDArray
 
-from matstd.twin.frames import Array
+from matstd.twin.frames import Array, IntArray
 from matstd.twin.units import UM
 
 
@@ -42,7 +41,7 @@ def rms_of_columns(values: Array) -> Array:
     return np.sqrt(np.mean(np.square(values), axis=0))
 
 
-def distinct_rows(rows: Array) -> tuple[Array, NDArray[np.int64]]:
+def distinct_rows(rows: Array) -> tuple[Array, IntArray]:
     """Distinct rows (K, M) in ascending order, and the number of each row among them, (N,).
 
     As `numpy.unique` of rows, which sorts whole rows as records and takes five times as long.

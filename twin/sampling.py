@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from matstd.twin.frames import Array
+from matstd.twin.frames import Array, IntArray
 
 
 def even_points(count: int, dimensions: int, start: int = 0) -> Array:
@@ -26,7 +26,7 @@ def even_points(count: int, dimensions: int, start: int = 0) -> Array:
     return np.mod(0.5 + np.outer(np.arange(start + 1, start + count + 1), alpha), 1.0)
 
 
-def spread_rows(count: int, most: int) -> NDArray[np.int64]:
+def spread_rows(count: int, most: int) -> IntArray:
     """Numbers of at most so many of `count` rows, evenly spread, the first and last among them."""
     return np.unique(np.linspace(0, count - 1, min(count, most)).astype(np.int64))
 

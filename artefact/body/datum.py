@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from matstd.artefact.body.patch import Hit, Mask, read_only, rows, sphere_entry
+from matstd.artefact.body.patch import Hit, read_only, rows, sphere_entry
 from matstd.twin.errors import ShapeMismatch
-from matstd.twin.frames import Array, unit
+from matstd.twin.frames import Array, Mask, unit
 
 STEM_CLEARANCE = 15.0 * np.pi / 180.0
 """Angle kept between a touch on a sphere and the rim of its stem, rad."""

@@ -10,10 +10,10 @@ import numpy as np
 
 from matstd.artefact.body.datum import DatumSphere
 from matstd.artefact.body.freeform import FreeformPatch
-from matstd.artefact.body.patch import Mask, Meeting, rows, sphere_entry
+from matstd.artefact.body.patch import Meeting, rows, sphere_entry
 from matstd.artefact.body.solids import entry
 from matstd.artefact.body.standard import Standard
-from matstd.twin.frames import Array, apply, turn, unit
+from matstd.twin.frames import Array, Mask, apply, turn, unit
 from matstd.twin.units import NM
 
 _EDGE_PITCH = 0.5  # mm, of the samples of a trimmed edge

@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from matstd.artefact.body.newton import ball_contact, foot_parameters, graph_normal
-from matstd.artefact.body.patch import Hit, Mask, read_only, rows, sphere_entry
+from matstd.artefact.body.patch import Hit, read_only, rows, sphere_entry
 from matstd.artefact.body.spline import Jet, check_knots, clamped_knots, greville, height, jet
 from matstd.twin.errors import ShapeMismatch
-from matstd.twin.frames import Array, apply, inverse, turn, unit
+from matstd.twin.frames import Array, Mask, apply, inverse, turn, unit
 from matstd.twin.sampling import grid_points
 
 OVERHANG = 6.0

@@ -4,9 +4,9 @@ from collections.abc import Callable
 
 import numpy as np
 
-from matstd.artefact.body.patch import Hit, Mask
+from matstd.artefact.body.patch import Hit
 from matstd.artefact.body.spline import Jet
-from matstd.twin.frames import Array, unit
+from matstd.twin.frames import Array, Mask, unit
 from matstd.twin.units import NM
 
 CONTACT_TOLERANCE = 1e-4 * NM  # Newton stops when the ball is this close to the surface, mm

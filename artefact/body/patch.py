@@ -4,12 +4,10 @@ from enum import StrEnum
 from typing import NamedTuple, Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from matstd.twin.errors import ShapeMismatch
-from matstd.twin.frames import Array
-
-Mask = NDArray[np.bool_]
+from matstd.twin.frames import Array, Mask
 
 
 class Hit(NamedTuple):

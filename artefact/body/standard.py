@@ -11,12 +11,12 @@ from matstd.artefact.body.datum import DatumPlane, DatumSphere, MountingHole, ou
 from matstd.artefact.body.freeform import FreeformPatch
 from matstd.artefact.body.known import Known
 from matstd.artefact.body.material import Material
-from matstd.artefact.body.patch import Mask, Surface
+from matstd.artefact.body.patch import Surface
 from matstd.artefact.body.sag import Sag
 from matstd.artefact.body.solids import BLEND, Ball, Body, Column, Cone, Plate, column
 from matstd.twin.display import Displayed
 from matstd.twin.errors import ShapeMismatch
-from matstd.twin.frames import Array
+from matstd.twin.frames import Array, Mask
 from matstd.twin.machine import Chain
 from matstd.twin.record import Labels
 from matstd.twin.sampling import grid_points

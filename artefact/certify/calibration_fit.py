@@ -19,7 +19,6 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from matstd.artefact.body import (
     FreeformPatch,
@@ -32,7 +31,7 @@ from matstd.artefact.body import (
 from matstd.artefact.certify.cmm_points_file import SIDES, CmmPoints
 from matstd.artefact.certify.face_correction import corrected_face
 from matstd.twin.errors import BadFile, NotEnoughData
-from matstd.twin.frames import Array, apply
+from matstd.twin.frames import Array, Mask, apply
 from matstd.twin.numbers import rms
 from matstd.twin.record import rigid_motion
 from matstd.twin.units import UM
@@ -177,7 +176,7 @@ class Ball(NamedTuple):
     form: float  # peak to valley, less what noise makes; nan where the CMM evaluated the ball
 
 
-def _is_outlier(left: Array, u_point: float) -> NDArray[np.bool_]:
+def _is_outlier(left: Array, u_point: float) -> Mask:
     """Points whose residual exceeds the outlier limit, (N,)."""
     usual = max(u_point, float(np.median(np.abs(left))) / 0.6745)
     return np.asarray(np.abs(left) > _OUTLIER_LIMIT * usual)

@@ -9,11 +9,10 @@ points are reached.
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from matstd.artefact.body import Standard
 from matstd.twin.errors import NotReachable
-from matstd.twin.frames import Array
+from matstd.twin.frames import Array, Mask
 from matstd.twin.units import DEG
 
 TIP = 1.5  # radius of the ball of the stylus, mm
@@ -57,9 +56,7 @@ ANGLES = (UPRIGHT, *(Angle(a, b) for a in _TILTS[1:] for b in _TURNS))
 """Angles in the order in which they are tried."""
 
 
-def reaches(
-    standard: Standard, centres: Array, high: float, length: float, angle: Angle
-) -> NDArray[np.bool_]:
+def reaches(standard: Standard, centres: Array, high: float, length: float, angle: Angle) -> Mask:
     """Whether the probe is free at ball centres (N, 3) and straight above them, (N,).
 
     Args:

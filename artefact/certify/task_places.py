@@ -3,16 +3,13 @@
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from matstd.artefact.body import Standard
 from matstd.artefact.brief import Task
 from matstd.twin.errors import BadFile, DesignError
-from matstd.twin.frames import Array
+from matstd.twin.frames import Array, Mask
 from matstd.twin.record import Touches
 from matstd.twin.units import DEG, UM
-
-Mask = NDArray[np.bool_]
 
 _MAX_OFFSET = 2.0 * UM  # rms of touches off the standard that evaluated them: its sag
 # is some tenths of a µm, a piece differs from its design by 5 to 50 µm

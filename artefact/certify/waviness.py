@@ -13,9 +13,8 @@ an assumption about waviness is taken.
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from matstd.twin.frames import Array
+from matstd.twin.frames import Array, Mask
 
 WIDTH_OF_LINE = 0.4  # between the outermost points of one line, across it, mm
 
@@ -31,7 +30,7 @@ MAX_SHARE_OF_LINES = 0.6
 class Lines(NamedTuple):
     """Dense lines among the points of a face."""
 
-    judging: NDArray[np.bool_]  # points of lines, which judge the fit of the others, (N,)
+    judging: Mask  # points of lines, which judge the fit of the others, (N,)
     seen: tuple[bool, bool]  # whether waves along u and along v are seen
 
 
@@ -48,7 +47,7 @@ def dense_lines(uv: Array, half_size: tuple[float, float]) -> Lines:
     return Lines(on_line, (seen[0], seen[1]))
 
 
-def _on_lines(along: Array, across: Array, length: float) -> NDArray[np.bool_]:
+def _on_lines(along: Array, across: Array, length: float) -> Mask:
     """Points of lines that are long and dense enough, (N,)."""
     out = np.zeros(len(along), dtype=bool)
     tried = np.zeros(len(along), dtype=bool)

@@ -16,8 +16,8 @@ from matstd.information.criteria import Posterior, mean_prediction, whitened
 from matstd.information.identifiability import rank_analysis
 from matstd.information.selection import Quota, Selection, fill
 from matstd.twin.errors import DesignError
-from matstd.twin.frames import Array, fixed_xyz, pose
-from matstd.twin.record import IntArray, Setup
+from matstd.twin.frames import Array, IntArray, fixed_xyz, pose
+from matstd.twin.record import Setup
 from matstd.twin.units import DEG
 
 STYLUS = 60.0  # additional length of a second stylus, mm

@@ -13,7 +13,6 @@ from matstd.artefact.body import Base, DatumSphere, FreeformPatch, MountingHole,
 from matstd.artefact.feasibility.touched import is_from_side, mutually_probeable, untouchable_faces
 from matstd.artefact.layout import (
     Blank,
-    Pairs,
     balls_on_posts,
     beside_balls,
     freeform_faces,
@@ -24,7 +23,7 @@ from matstd.artefact.layout import (
 )
 from matstd.artefact.reach import ProbeReach, reach_of, spread_poses
 from matstd.twin.errors import NotBuildable
-from matstd.twin.frames import Array
+from matstd.twin.frames import Array, Mask
 
 FEWEST_BALLS = 3
 """A set-up has six unknowns; a single ball leaves all rotations about it undetermined."""
@@ -119,7 +118,7 @@ def room_among(
     balls: Sequence[DatumSphere],
     wanted: int,
     blank: Blank,
-    seen: Pairs | None = None,
+    seen: Mask | None = None,
 ) -> Room:
     """As many faces as wanted beside the fewest balls, or the largest set found.
 

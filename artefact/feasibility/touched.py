@@ -8,16 +8,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from matstd.artefact.body import DatumSphere, FreeformPatch, Standard
 from matstd.artefact.layout import Blank, with_spheres
 from matstd.artefact.reach import ProbeReach, Requests, joined
 from matstd.artefact.worth import each_at, face_grid
-from matstd.twin.frames import Array, inverse, turn
+from matstd.twin.frames import Array, Mask, inverse, turn
 from matstd.twin.machine import table_to_tool
-
-Which = NDArray[np.bool_]
 
 _LENGTH, _SAMPLES = 160.0, 8.0  # mm of the probe above its ball that are checked, in steps
 _FREE_SHARE = 0.5  # of the touches on a face that must stay free beside any other face
@@ -49,9 +46,9 @@ def untouchable_faces(reach: ProbeReach, made: Standard, poses: Array) -> list[s
 class ProbeAccess:
     """Access of the probe to F faces."""
 
-    reached: Which  # whether a touch is within angle and travels, (F,)
-    alone: Which  # whether such a touch clears plate, balls and the own pillar, (F,)
-    beside: Which  # whether two faces leave each other at least half of such touches, (F, F)
+    reached: Mask  # whether a touch is within angle and travels, (F,)
+    alone: Mask  # whether such a touch clears plate, balls and the own pillar, (F,)
+    beside: Mask  # whether two faces leave each other at least half of such touches, (F, F)
 
 
 def mutually_probeable(
@@ -93,7 +90,7 @@ def _is_open(
     faces: Sequence[FreeformPatch],
     balls: Sequence[DatumSphere],
     touches: Requests,
-) -> Which:
+) -> Mask:
     """Touches at which the probe clears the plate, the balls and the touched pillar."""
     ball, axis = _approach(reach, touches)
     place, radius = reach.shape.stations()
@@ -117,7 +114,7 @@ def _approach(reach: ProbeReach, touches: Requests) -> tuple[Array, Array]:
 
 def in_the_way(
     reach: ProbeReach, blank: Blank, faces: Sequence[FreeformPatch], touches: Requests
-) -> Which:
+) -> Mask:
     """Whether each face obstructs the probe at each touch, (F, N)."""
     ball, axis = _approach(reach, touches)
     begin, points, radii = 0.0, list[Array](), list[Array]()

@@ -15,9 +15,9 @@ import numpy as np
 
 from matstd.artefact.body import FreeformPatch, Standard
 from matstd.artefact.hidden.smooth_effects import Measurement
-from matstd.artefact.reach import Mask, ProbeReach, Requests, joined
+from matstd.artefact.reach import ProbeReach, Requests, joined
 from matstd.artefact.worth import each_at
-from matstd.twin.frames import Array
+from matstd.twin.frames import Array, Mask
 from matstd.twin.sampling import grid_points
 from matstd.twin.units import UM
 

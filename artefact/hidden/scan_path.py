@@ -14,8 +14,7 @@ from matstd.artefact.hidden.scan_lines import EDGE, Scan, can_be_scanned
 from matstd.artefact.reach import ProbeReach, Requests, joined
 from matstd.artefact.worth import each_at
 from matstd.twin.files import write_whole
-from matstd.twin.frames import Array
-from matstd.twin.record import IntArray
+from matstd.twin.frames import Array, IntArray
 from matstd.twin.units import DEG
 
 

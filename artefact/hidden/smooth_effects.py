@@ -22,9 +22,8 @@ from matstd.artefact.reach import ProbeReach, Requests, joined
 from matstd.artefact.worth import Criterion
 from matstd.information.power import FieldTest, decorrelated, field_test, low_rank
 from matstd.sensitivity.first_order import Box
-from matstd.twin.frames import Array, turn
+from matstd.twin.frames import Array, IntArray, turn
 from matstd.twin.machine import linear_directions
-from matstd.twin.record import IntArray
 from matstd.twin.units import UM
 
 FIELD_WIDTHS, BUMP_WIDTHS = (40.0, 25.0), (40.0, 20.0)

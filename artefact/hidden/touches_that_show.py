@@ -21,8 +21,7 @@ from matstd.artefact.hidden.smooth_effects import (
     measured_together,
 )
 from matstd.artefact.worth import Criterion
-from matstd.twin.frames import Array
-from matstd.twin.record import IntArray
+from matstd.twin.frames import Array, IntArray
 
 _NONE = 1e-6  # of a square of a signal, for effects that nothing shows yet
 

@@ -7,7 +7,7 @@ beside each other, and rivals. A further rival is one more entry in `rivals`.
 from matstd.artefact.layout.blank import Blank, Fittings
 from matstd.artefact.layout.post import cantilever_stiffness, post_stiffness
 from matstd.artefact.layout.rival_artefacts import rivals, with_spheres
-from matstd.artefact.layout.side_by_side import Pairs, beside_balls, most_side_by_side
+from matstd.artefact.layout.side_by_side import beside_balls, most_side_by_side
 from matstd.artefact.layout.upright import (
     DEFAULT_MODULUS,
     WALL_GAP,
@@ -27,7 +27,6 @@ __all__ = [
     "WALL_GAP",
     "Blank",
     "Fittings",
-    "Pairs",
     "Wave",
     "balls_fit",
     "balls_on_posts",

@@ -3,19 +3,17 @@
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from matstd.artefact.body import DatumSphere, FreeformPatch
 from matstd.artefact.layout.blank import Blank
 from matstd.artefact.layout.upright import balls_fit, faces_beside, faces_fit, holes_on
-
-Pairs = NDArray[np.bool_]
+from matstd.twin.frames import IntArray, Mask
 
 
 def most_side_by_side(
-    fits: Pairs,
+    fits: Mask,
     *wanted: int,
-    kind: NDArray[np.int64] | None = None,
+    kind: IntArray | None = None,
     starts: int | None = None,
 ) -> list[int]:
     """Sites that fit beside each other: the number wanted, or the largest set found.
@@ -53,7 +51,7 @@ def beside_balls(
     balls: Sequence[DatumSphere],
     wanted: tuple[int, int],
     blank: Blank,
-    seen: Pairs | None = None,
+    seen: Mask | None = None,
 ) -> tuple[list[int], list[int]]:
     """Faces and balls that fit on a blank together: the number wanted, or the largest set found.
 

@@ -10,7 +10,6 @@ from collections.abc import Sequence
 from itertools import product
 
 import numpy as np
-from numpy.typing import NDArray
 
 from matstd.artefact.body import (
     BLEND,
@@ -25,11 +24,9 @@ from matstd.artefact.layout.blank import Blank
 from matstd.artefact.layout.post import post_foot
 from matstd.artefact.layout.shapes import smooth_heights, steepest_slope
 from matstd.twin.errors import NotBuildable
-from matstd.twin.frames import Array, pose
+from matstd.twin.frames import Array, Mask, pose
 from matstd.twin.sampling import grid_points
 from matstd.twin.units import UM
-
-Pairs = NDArray[np.bool_]
 
 WALL_GAP = 12.0
 """Smallest gap between two bodies, mm: a cutter of 10 mm passes with its run-out."""
@@ -275,13 +272,13 @@ def least_gap(limits: Limits) -> float:
 
 def faces_fit(
     faces: Sequence[FreeformPatch], holes: Sequence[MountingHole], limits: Limits
-) -> Pairs:
+) -> Mask:
     """Which pillars fit beside each other, (F, F); one over a hole fits beside none."""
     middle = np.stack([p.T_artefact_patch[:2, 3] for p in faces])
     half = np.array([p.half_size for p in faces])
     # the sum first, so that the result is symmetric to the last bit
     beyond = np.abs(middle[:, None] - middle) - (half[:, None] + half)
-    out: Pairs = np.linalg.norm(np.maximum(beyond, 0.0), axis=-1) >= least_gap(limits)
+    out: Mask = np.linalg.norm(np.maximum(beyond, 0.0), axis=-1) >= least_gap(limits)
     for hole in holes:
         blocked = (
             _distance_to_pillar(faces, np.array([[hole.x, hole.y]]))[0]
@@ -291,7 +288,7 @@ def faces_fit(
     return out
 
 
-def balls_fit(balls: Sequence[DatumSphere], blank: Blank) -> Pairs:
+def balls_fit(balls: Sequence[DatumSphere], blank: Blank) -> Mask:
     """Which posts leave room for cutter and probe between each other, (B, B)."""
     across, widest = _circles(balls)
     apart = np.linalg.norm(across[:, None] - across, axis=-1)
@@ -301,7 +298,7 @@ def balls_fit(balls: Sequence[DatumSphere], blank: Blank) -> Pairs:
 
 def faces_beside(
     faces: Sequence[FreeformPatch], balls: Sequence[DatumSphere], blank: Blank
-) -> NDArray[np.bool_]:
+) -> Mask:
     """Which pillars leave room for cutter and probe beside some posts, (F,)."""
     if not balls:
         return np.ones(len(faces), dtype=bool)

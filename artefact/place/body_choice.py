@@ -9,7 +9,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from matstd.artefact.body import DatumSphere, FreeformPatch, MountingHole, Standard, constraints
 from matstd.artefact.feasibility import (
@@ -39,9 +38,7 @@ from matstd.artefact.reach import Requests, spread_poses
 from matstd.artefact.worth import BallPlaces, Criterion
 from matstd.information.selection import best_groups
 from matstd.twin.errors import NotBuildable, NotReachable
-from matstd.twin.frames import Array
-
-Which = NDArray[np.bool_]
+from matstd.twin.frames import Array, Mask
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,7 +46,7 @@ class _FacePool:
     """Candidate faces beside some balls, named by their numbers: F."""
 
     faces: list[FreeformPatch]
-    fits: Which  # which of them fit beside each other, (F, F)
+    fits: Mask  # which of them fit beside each other, (F, F)
     hides: Array  # share of the touches on the balls that each face obstructs, (F,)
     poses: Array  # table poses of these touches, (K, R), rad
 
@@ -171,7 +168,7 @@ class BodyChoice:
 
     def _probeable(
         self, faces: list[FreeformPatch], balls: list[DatumSphere], poses: Array
-    ) -> Which:
+    ) -> Mask:
         return mutually_probeable(self.criterion.reach, self.blank, faces, balls, poses).beside
 
     def _with_holes(
@@ -236,7 +233,7 @@ class BodyChoice:
         return longest
 
     def _most_informative(
-        self, faces: list[FreeformPatch], fits: Which, poses: Array, count: int, take: int
+        self, faces: list[FreeformPatch], fits: Mask, poses: Array, count: int, take: int
     ) -> list[int]:
         """The most informative faces; if too few fit beside them, starting from a set that fits."""
         wanted = touches_on(faces, poses)
@@ -342,7 +339,7 @@ def _azimuth(place: Array) -> float:
     return float(np.arctan2(place[1], place[0]))
 
 
-def _blame(fits: Which, features: tuple[str, ...], names: list[str], chosen: list[int]) -> None:
+def _blame(fits: Mask, features: tuple[str, ...], names: list[str], chosen: list[int]) -> None:
     """Exclude the faces, or the pair of faces, that violate a limit."""
     guilty = [chosen[names.index(name)] for name in features if name in names]
     if len(guilty) == 2 and guilty[0] != guilty[1]:

@@ -2,8 +2,7 @@
 
 import numpy as np
 
-from matstd.twin.frames import Array
-from matstd.twin.record import IntArray
+from matstd.twin.frames import Array, IntArray
 
 _SWEEPS = 4  # sweeps over all places; only two or three change any
 _MIN_GAIN = 1e-9  # relative gain below which a place is not exchanged

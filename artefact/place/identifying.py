@@ -15,7 +15,7 @@ from matstd.artefact.compare import Rival
 from matstd.artefact.layout import with_spheres
 from matstd.artefact.place.body_choice import BodyChoice, balls_beside
 from matstd.artefact.place.proving import touches_on_faces
-from matstd.artefact.reach import Mask, ProbeReach, Requests
+from matstd.artefact.reach import ProbeReach, Requests
 from matstd.artefact.worth import (
     BallPlaces,
     Criterion,
@@ -29,7 +29,7 @@ from matstd.information.criteria import Posterior
 from matstd.information.selection import Certificate
 from matstd.twin.compute import Progress
 from matstd.twin.errors import NotBuildable, NotReachable
-from matstd.twin.frames import Array
+from matstd.twin.frames import Array, Mask
 
 _MAX_BASES = 3  # sets of balls, at most
 _MAX_REDRAWS, _GOOD_ENOUGH = (

@@ -13,8 +13,7 @@ from matstd.artefact.reach import ProbeReach, Requests, joined
 from matstd.artefact.worth import Criterion, each_at
 from matstd.information.selection import Selection, fill
 from matstd.twin.errors import NotReachable
-from matstd.twin.frames import Array
-from matstd.twin.record import IntArray
+from matstd.twin.frames import Array, IntArray
 from matstd.twin.sampling import grid_points
 
 _PLACES_PER_TOUCH = 1.8  # candidate places per wanted touch

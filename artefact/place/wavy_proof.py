@@ -16,8 +16,7 @@ from matstd.artefact.hidden import touched as single
 from matstd.artefact.reach import Requests, spread_poses
 from matstd.artefact.worth import Criterion
 from matstd.twin.errors import NotReachable
-from matstd.twin.frames import Array, apply
-from matstd.twin.record import IntArray
+from matstd.twin.frames import Array, IntArray, apply
 
 AREA = 40.0
 """Side of the squares of a face that get equal shares, mm: the width of the widest effect."""

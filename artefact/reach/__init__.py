@@ -11,7 +11,7 @@ from matstd.artefact.reach.datum_ball import DatumBall
 from matstd.artefact.reach.face_of_table import hangs, standing_remarks, table_face
 from matstd.artefact.reach.mesh_cover import mesh_triangles, read_drawn_body
 from matstd.artefact.reach.probe_clearance import ProbeShape, clearance
-from matstd.artefact.reach.touchable import Mask, ProbeReach, Requests, joined
+from matstd.artefact.reach.touchable import ProbeReach, Requests, joined
 from matstd.artefact.reach.within_reach import (
     ANGLE,
     Limit,
@@ -29,7 +29,6 @@ __all__ = [
     "Clamping",
     "DatumBall",
     "Limit",
-    "Mask",
     "PlacesInReach",
     "ProbeReach",
     "ProbeShape",

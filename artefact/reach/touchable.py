@@ -7,12 +7,11 @@ from collections import Counter
 from dataclasses import dataclass, field, fields
 
 import numpy as np
-from numpy.typing import NDArray
 
 from matstd.artefact.body import Meeting, Standard, contact
 from matstd.artefact.reach.probe_clearance import Clearance, ProbeShape
 from matstd.artefact.reach.workshop import Workshop, clearance_in_workshop, still_frames
-from matstd.twin.frames import Array, apply, inverse, turn
+from matstd.twin.frames import Array, IntArray, Mask, apply, inverse, turn
 from matstd.twin.machine import (
     Chain,
     inverse_linear,
@@ -21,10 +20,8 @@ from matstd.twin.machine import (
     tool_and_directions,
 )
 from matstd.twin.numbers import distinct_rows
-from matstd.twin.record import IntArray, Labels, Setup, Touches, linear_approach
+from matstd.twin.record import Labels, Setup, Touches, linear_approach
 from matstd.twin.units import DEG
-
-Mask = NDArray[np.bool_]
 
 _WORDS = "U200"  # of a reason
 _LIFT = 400.0  # mm the ball comes down from, far above any standard

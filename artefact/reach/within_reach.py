@@ -10,9 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from matstd.artefact.layout import Blank
-from matstd.artefact.reach.touchable import ROUNDING, Mask, ProbeReach
-from matstd.twin.frames import Array
-from matstd.twin.record import IntArray
+from matstd.artefact.reach.touchable import ROUNDING, ProbeReach
+from matstd.twin.frames import Array, IntArray, Mask
 from matstd.twin.units import DEG
 
 ANGLE = "angle"

@@ -9,7 +9,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from matstd.artefact.body import DatumSphere, FreeformPatch
 from matstd.artefact.layout import Blank, balls_fit, balls_on_posts, faces_beside
@@ -18,8 +17,7 @@ from matstd.artefact.worth.touch_choice import each_at, sphere_grid
 from matstd.artefact.worth.touch_criterion import Criterion
 from matstd.information.selection import best_groups
 from matstd.twin.errors import NotReachable
-from matstd.twin.frames import Array
-from matstd.twin.record import IntArray
+from matstd.twin.frames import Array, IntArray, Mask
 
 _PLACES = 500  # that are tried; a third of them is barred beside freeform faces
 _MORE = 12  # times as many are drawn where faces bar most of the base
@@ -37,11 +35,9 @@ class BallPlaces:
     touches: Requests
     W: Array  # their rows, (N, R)
     group: IntArray  # ball of every row, (N,)
-    fits: NDArray[np.bool_]  # which of them stand beside each other, (B, B)
+    fits: Mask  # which of them stand beside each other, (B, B)
 
-    def best(
-        self, count: int, touches: int, clear: NDArray[np.bool_] | None = None
-    ) -> list[DatumSphere]:
+    def best(self, count: int, touches: int, clear: Mask | None = None) -> list[DatumSphere]:
         """The balls whose touches together say most, the first the most; fewer without room.
 
         Args:

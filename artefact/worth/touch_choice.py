@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from matstd.artefact.body import DatumSphere, FreeformPatch, Standard
-from matstd.artefact.reach import Mask, ProbeReach, Requests, joined
+from matstd.artefact.reach import ProbeReach, Requests, joined
 from matstd.artefact.worth.touch_criterion import Criterion
 from matstd.information.selection import (
     Certificate,
@@ -29,7 +29,7 @@ from matstd.information.selection import (
 )
 from matstd.twin.compute import blocks
 from matstd.twin.errors import NotReachable
-from matstd.twin.frames import Array
+from matstd.twin.frames import Array, Mask
 from matstd.twin.machine import Chain
 from matstd.twin.sampling import grid_points
 from matstd.twin.units import DEG

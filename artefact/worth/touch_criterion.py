@@ -30,10 +30,10 @@ from matstd.sensitivity.first_order import Box, Workspace, latin_hypercube
 from matstd.sensitivity.population import Population, drawn_scales
 from matstd.twin.compute import blocks
 from matstd.twin.errors import DesignError, NotReachable
-from matstd.twin.frames import Array, apply
+from matstd.twin.frames import Array, IntArray, apply
 from matstd.twin.machine import Family
 from matstd.twin.model import Model, traits
-from matstd.twin.record import IntArray, Touches, at_poses
+from matstd.twin.record import Touches, at_poses
 from matstd.twin.units import DEG
 
 SETUP_SD = (1.0, 5e-3)

@@ -8,8 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from matstd.twin.frames import Array
-from matstd.twin.record import IntArray
+from matstd.twin.frames import Array, IntArray
 from matstd.twin.units import DEG
 
 

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from matstd.compensation.field import MachineErrors, actual_tip, aligned, shifted
 from matstd.compensation.part_programs import Keep, Motion, Program
@@ -13,9 +12,9 @@ from matstd.compensation.programs.path import ProgramPath, are_first, shares_of_
 from matstd.compensation.programs.times import Timed, in_time
 from matstd.compensation.tables import Header, point_spacing
 from matstd.twin.errors import OutsideTravel
-from matstd.twin.frames import Array
+from matstd.twin.frames import Array, IntArray, Mask
 from matstd.twin.machine import tip
-from matstd.twin.record import IntArray, Touches
+from matstd.twin.record import Touches
 from matstd.twin.sampling import spread_rows
 from matstd.twin.units import DEG, MINUTE, UM
 
@@ -102,7 +101,7 @@ class Compensated:
     unmoved: tuple[int, ...]
 
     @cached_property
-    def is_stated(self) -> NDArray[np.bool_]:
+    def is_stated(self) -> Mask:
         """Points that the program states, (N,): not those over a hole that its cycle goes to."""
         return self._ahead[self.motion] == 0
 

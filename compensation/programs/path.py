@@ -4,19 +4,18 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from matstd.compensation.field import MachineErrors, correction
 from matstd.compensation.part_programs import Paths, Program, forces
-from matstd.twin.frames import Array
-from matstd.twin.record import IntArray, Touches, last_signs
+from matstd.twin.frames import Array, IntArray, Mask
+from matstd.twin.record import Touches, last_signs
 from matstd.twin.units import DEG, MINUTE
 
 RAPID = 10_000.0
 """Speed of rapid motions where a time is needed, mm/min; drift hardly depends on it."""
 
 
-def are_first(which: IntArray) -> NDArray[np.bool_]:
+def are_first(which: IntArray) -> Mask:
     """Which lines are the first of their motions, (N,)."""
     return np.append(True, which[1:] != which[:-1])
 

@@ -12,8 +12,7 @@ import numpy as np
 
 from matstd.compensation.programs.path import ProgramPath, shares_of_lines
 from matstd.twin.errors import BadFile
-from matstd.twin.frames import Array
-from matstd.twin.record import IntArray
+from matstd.twin.frames import Array, IntArray
 from matstd.twin.units import DEG, MINUTE
 
 MIN_CHANGED_SHARE = 0.02

@@ -10,9 +10,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from matstd.diagnosis.fit import MIN_POSES, Fit
-from matstd.diagnosis.regression import BoolArray, Memory
-from matstd.twin.frames import Array
-from matstd.twin.record import IntArray, Touches
+from matstd.diagnosis.regression import Memory
+from matstd.twin.frames import Array, IntArray, Mask
+from matstd.twin.record import Touches
 
 PARTS_OF_TIME = 5
 """Stretches of time that are left out in turn; a law of warming up is seen in one of them."""
@@ -24,7 +24,7 @@ MEMORY_LENGTHS = 3.0
 """Times that a block is longer than the memory of the residual: 5 % are left at its middle."""
 
 
-def domains(touches: Touches, used: BoolArray) -> dict[str, tuple[IntArray, ...]]:
+def domains(touches: Touches, used: Mask) -> dict[str, tuple[IntArray, ...]]:
     """Blocks of every domain that has several, by its column; `time_s`, `setup`, `force`.
 
     Halves of the readings of every axis and of the load, stretches of time, set-ups; rows by their
@@ -34,7 +34,7 @@ def domains(touches: Touches, used: BoolArray) -> dict[str, tuple[IntArray, ...]
     return {name: b for name, b in inside.items() if min(map(len, b)) >= MIN_ROWS}
 
 
-def _all_domains(touches: Touches, used: BoolArray) -> Iterator[tuple[str, tuple[IntArray, ...]]]:
+def _all_domains(touches: Touches, used: Mask) -> Iterator[tuple[str, tuple[IntArray, ...]]]:
     for axis in touches.chain.programmed_axes:
         yield touches.chain.link(axis).column, _each(_is_upper(touches.reading(axis)[used]))
     order = np.argsort(touches.time[used], kind="stable")
@@ -44,11 +44,11 @@ def _all_domains(touches: Touches, used: BoolArray) -> Iterator[tuple[str, tuple
         yield "force", _each(_is_upper(np.linalg.norm(touches.force, axis=1)[used]))
 
 
-def _is_upper(values: Array) -> BoolArray:
+def _is_upper(values: Array) -> Mask:
     return np.asarray(values > np.median(values))
 
 
-def _each(label: BoolArray | IntArray) -> tuple[IntArray, ...]:
+def _each(label: Mask | IntArray) -> tuple[IntArray, ...]:
     return tuple(np.flatnonzero(label == one) for one in np.unique(label))
 
 

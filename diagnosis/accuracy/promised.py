@@ -16,10 +16,10 @@ from matstd.diagnosis.accuracy.left_out_blocks import domains
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.regression import left_out, solve
 from matstd.twin.effects import setup_errors
-from matstd.twin.frames import Array
+from matstd.twin.frames import Array, IntArray
 from matstd.twin.machine import inverse_linear
 from matstd.twin.model import Model, columns
-from matstd.twin.record import Instrument, IntArray, Touches
+from matstd.twin.record import Instrument, Touches
 
 DRAWN = 1000
 """Touches at other places, at least: their mean variance is known within a few per cent."""

@@ -14,9 +14,9 @@ from scipy.spatial import cKDTree
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.regression import f_tail, replicate_groups
-from matstd.twin.frames import Array
+from matstd.twin.frames import Array, IntArray
 from matstd.twin.numbers import rms
-from matstd.twin.record import IntArray, Touches
+from matstd.twin.record import Touches
 
 NEAR = 0.05  # distance of near neighbours, as a share of what was probed of every reading
 MIN_PAIRS = 10  # pairs of neighbours from which their differences are a figure

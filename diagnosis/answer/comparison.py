@@ -17,12 +17,11 @@ from matstd.diagnosis.evidence import EffectSet, Progress, ResidualSpace, quiet
 from matstd.diagnosis.faults import DescriptionFault, description_faults
 from matstd.diagnosis.fit import Fit, Learnt, Prior, fit_run
 from matstd.diagnosis.geometry import LearntGeometry, learnt_geometry
-from matstd.diagnosis.regression import BoolArray
 from matstd.diagnosis.remarks import Remark, remarks
 from matstd.diagnosis.residual import Region, Structure, find_structure, regions
 from matstd.twin.compute import one_blas_thread
 from matstd.twin.display import Tabular
-from matstd.twin.frames import Array
+from matstd.twin.frames import Array, Mask
 from matstd.twin.library import ordinary_model
 from matstd.twin.model import Model
 from matstd.twin.numbers import rms
@@ -111,7 +110,7 @@ class Comparison(Tabular):
         return self.run.deviation - self.residual
 
     @property
-    def counted(self) -> BoolArray:
+    def counted(self) -> Mask:
         """Rows that the figures are taken over: all but gross errors, (N,)."""
         return ~(self.fit.gross.rows | self.fit.gross_test_rows)
 

@@ -30,8 +30,8 @@ from matstd.diagnosis.search import (
     refined_named,
     tables_along,
 )
+from matstd.twin.frames import IntArray
 from matstd.twin.library import parse_effect
-from matstd.twin.record import IntArray
 
 MAX_DEPENDENCES = 2  # most patterns that `depends_on` reports, one after the other
 MAX_TRIED = 6  # library effects, the best ones by themselves, that are tried beside what was found

@@ -20,8 +20,9 @@ from matstd.diagnosis.laws import Learning
 from matstd.diagnosis.remarks import Remark
 from matstd.diagnosis.residual import Region, Structure
 from matstd.twin.display import Tabular
+from matstd.twin.frames import IntArray
 from matstd.twin.model import Effect
-from matstd.twin.record import IntArray, Run
+from matstd.twin.record import Run
 from matstd.twin.units import UM
 
 

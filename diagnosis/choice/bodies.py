@@ -24,10 +24,10 @@ from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.regression import GrossErrors
 from matstd.diagnosis.search import DiagnosisTask, refined_set
 from matstd.twin.effects import repeat
-from matstd.twin.frames import Array
+from matstd.twin.frames import Array, IntArray
 from matstd.twin.machine import Chain, Family, Symbol
 from matstd.twin.model import Effect, moving_axes
-from matstd.twin.record import IntArray, Touches
+from matstd.twin.record import Touches
 from matstd.twin.thermal import ThermalLag, drives, follower, is_speed
 
 MIN_CORRELATION_ALIKE = 0.999

@@ -14,9 +14,8 @@ from matstd.diagnosis.evidence import ResidualSpace, ScaledEffect
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.regression import GrossErrors
 from matstd.diagnosis.search import FREEDOM, DiagnosisTask
-from matstd.twin.frames import Array
+from matstd.twin.frames import Array, IntArray
 from matstd.twin.model import Effect
-from matstd.twin.record import IntArray
 
 PRIOR_SIZES = 2.0 ** np.arange(-10.0, 3.0)
 """Sizes of the prior that are tried, in usual sizes: an octave apart, since the error of prediction

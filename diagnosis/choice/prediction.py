@@ -23,11 +23,11 @@ from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.regression import GrossErrors, Memory
 from matstd.diagnosis.search import DiagnosisTask, SearchState, clearly_best, likeliest_drift
-from matstd.twin.frames import Array
+from matstd.twin.frames import Array, IntArray
 from matstd.twin.library import proposals
 from matstd.twin.model import Effect, traits
 from matstd.twin.numbers import rms
-from matstd.twin.record import IntArray, Touches
+from matstd.twin.record import Touches
 from matstd.twin.thermal import drives, field
 
 NOTHING, FOUND, UNRECORDED = "nothing", "single effects", "unrecorded driver"

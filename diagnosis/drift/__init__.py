@@ -15,12 +15,11 @@ from matstd.diagnosis.drift.judged import Judged, chosen, judge, offered
 from matstd.diagnosis.drift.live import LiveDrift
 from matstd.diagnosis.drift.log_file import check_alike, read_log, read_probed
 from matstd.diagnosis.drift.probing import ProbedPrediction, predict_with_probings
-from matstd.diagnosis.drift.record import DriftRecord, IntArray, joined, varying
+from matstd.diagnosis.drift.record import DriftRecord, joined, varying
 
 __all__ = [
     "DriftLaw",
     "DriftRecord",
-    "IntArray",
     "Judged",
     "LiveDrift",
     "ProbedPrediction",

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from matstd.diagnosis.drift.linear import memory_of
-from matstd.diagnosis.drift.record import DriftRecord, IntArray
-from matstd.twin.frames import Array
+from matstd.diagnosis.drift.record import DriftRecord
+from matstd.twin.frames import Array, IntArray
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,9 +9,9 @@ import numpy as np
 from matstd.diagnosis.drift.constant import constant
 from matstd.diagnosis.drift.lags import at_once, lagged_drives
 from matstd.diagnosis.drift.linear import ridge
-from matstd.diagnosis.drift.record import DriftRecord, IntArray, blocks, is_speed
+from matstd.diagnosis.drift.record import DriftRecord, blocks, is_speed
 from matstd.twin.compute import Progress
-from matstd.twin.frames import Array
+from matstd.twin.frames import Array, IntArray
 from matstd.twin.numbers import rms, rms_of_columns
 
 BLOCKS = 4  # parts of the training hours that are left out in turn: each must hold a load cycle

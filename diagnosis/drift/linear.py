@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from matstd.diagnosis.drift.lags import Lagged
-from matstd.diagnosis.drift.record import DriftRecord, IntArray
-from matstd.twin.frames import Array
+from matstd.diagnosis.drift.record import DriftRecord
+from matstd.twin.frames import Array, IntArray
 
 WEIGHTS = 10.0 ** np.arange(-6.0, 1.1, 0.5)
 """Of ridge regression, in variances of a standardised column."""

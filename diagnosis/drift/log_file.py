@@ -7,10 +7,10 @@ from pathlib import Path
 
 import numpy as np
 
-from matstd.diagnosis.drift.record import DriftRecord, IntArray
+from matstd.diagnosis.drift.record import DriftRecord
 from matstd.twin.errors import BadFile
 from matstd.twin.files import CsvTable, read_text
-from matstd.twin.frames import Array
+from matstd.twin.frames import Array, IntArray
 from matstd.twin.units import HOUR, MINUTE, UM, URAD
 
 EPOCH = datetime(2000, 1, 1)

@@ -15,8 +15,8 @@ import numpy as np
 
 from matstd.diagnosis.drift.judged import Judged
 from matstd.diagnosis.drift.linear import LinearLaw
-from matstd.diagnosis.drift.record import DriftRecord, IntArray
-from matstd.twin.frames import Array
+from matstd.diagnosis.drift.record import DriftRecord
+from matstd.twin.frames import Array, IntArray
 from matstd.twin.units import DAY
 
 RENEWAL_TIME = 2.0 * DAY

@@ -4,13 +4,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from matstd.twin.errors import NotEnoughData
-from matstd.twin.frames import Array
+from matstd.twin.frames import Array, IntArray
 from matstd.twin.units import UM, URAD
-
-IntArray = NDArray[np.int64]
 
 SIZE = {"mm": UM, "rad": URAD}
 """Sizes that weigh equally where several components are judged together: 1 µm and 1 µrad."""

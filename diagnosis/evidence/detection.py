@@ -11,9 +11,9 @@ from collections.abc import Iterator
 import numpy as np
 from scipy.special import fdtri
 
-from matstd.diagnosis.evidence.effect_signatures import IntArray, Signatures
+from matstd.diagnosis.evidence.effect_signatures import Signatures
 from matstd.diagnosis.policy import POLICY
-from matstd.twin.frames import Array
+from matstd.twin.frames import Array, IntArray
 
 REPRODUCED = 0.93**2
 """Share of a signature, as squares, that an effect must reproduce to be as right an answer."""

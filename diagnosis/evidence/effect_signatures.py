@@ -13,15 +13,13 @@ from itertools import product
 from weakref import WeakKeyDictionary
 
 import numpy as np
-from numpy.typing import NDArray
 
 from matstd.diagnosis.fit import Fit
-from matstd.diagnosis.regression import PRIOR_DOF, BoolArray, Whitener
-from matstd.twin.frames import Array
+from matstd.diagnosis.regression import PRIOR_DOF, Whitener
+from matstd.twin.frames import Array, IntArray, Mask
 from matstd.twin.model import Effect, columns, is_tunable
 from matstd.twin.record import Touches
 
-IntArray = NDArray[np.int64]
 Progress = Callable[[float, str], None]
 """Called with the share done and what is being done; only the command line shows it."""
 
@@ -43,13 +41,13 @@ class ResidualSpace:
     """What a fit leaves: the projection on it, and the residual, data and prior rows together."""
 
     touches: Touches  # all of the run, since some effects remember what went before
-    used: BoolArray  # which of them the fit uses, N of them
+    used: Mask  # which of them the fit uses, N of them
     u: Array  # their standard uncertainty as found, (N,), mm
     Q: Array  # basis of the model, data and prior rows, (N + P, P)
     residual: Array  # data and prior rows, (N + P,)
     dof: float  # degrees of freedom left
     groups: tuple[IntArray, ...]  # rows of every table pose
-    gross: BoolArray
+    gross: Mask
     whitener: Whitener | None = None  # filter of the noise's memory; None for white noise
     # squared residual that the stated size of the noise counts for, as `PRIOR_DOF` observations, in
     # units of the found one

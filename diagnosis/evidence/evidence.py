@@ -6,9 +6,9 @@ from functools import cached_property
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve, solve_triangular
 
-from matstd.diagnosis.evidence.effect_signatures import IntArray, ResidualSpace, Signatures
+from matstd.diagnosis.evidence.effect_signatures import ResidualSpace, Signatures
 from matstd.diagnosis.regression import PRIOR_DOF, LeftOut, f_probability, left_out
-from matstd.twin.frames import Array
+from matstd.twin.frames import Array, IntArray
 from matstd.twin.model import Effect
 
 MIN_VISIBLE = 0.25

@@ -8,8 +8,7 @@ import numpy as np
 from scipy.linalg import orth
 
 from matstd.diagnosis.fit.identification import Fit
-from matstd.diagnosis.regression import BoolArray
-from matstd.twin.frames import Array
+from matstd.twin.frames import Array, Mask
 from matstd.twin.model import Effect, Inner, columns, inner_values, traits
 from matstd.twin.numbers import rms
 from matstd.twin.record import Touches
@@ -274,16 +273,14 @@ def _reported_size(
     )
 
 
-def _is_seen(fit: Fit, place: slice) -> BoolArray:
+def _is_seen(fit: Fit, place: slice) -> Mask:
     """Which parameters the run determines at all; all, where it determines none."""
     u = np.sqrt(np.diag(fit.covariance[place, place]))
     seen = np.asarray(u < MIN_UNSEEN_SHARE * fit.prior.sd[place])
     return seen if seen.any() else np.ones(len(u), dtype=bool)
 
 
-def size(
-    effect: Effect, theta: Array, covariance: Array, seen: BoolArray | None = None
-) -> Reported:
+def size(effect: Effect, theta: Array, covariance: Array, seen: Mask | None = None) -> Reported:
     """Length of those parameters that share the unit of the first, with its uncertainty.
 
     Parameters that no touch sees, such as a slip across the only direction that was probed, are

@@ -4,13 +4,11 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from matstd.diagnosis.fit.inner import Tangent, tangents
 from matstd.diagnosis.fit.prior import Prior
 from matstd.diagnosis.fit.suited_prior import narrowed, widened_by, widening
 from matstd.diagnosis.regression import (
-    BoolArray,
     GrossErrors,
     LeftOut,
     Memory,
@@ -28,10 +26,10 @@ from matstd.diagnosis.regression import (
 from matstd.twin.display import Displayed
 from matstd.twin.effects import Free, placing_errors, setup_errors
 from matstd.twin.errors import NotEnoughData
-from matstd.twin.frames import Array
+from matstd.twin.frames import Array, IntArray, Mask
 from matstd.twin.model import Effect, Model, Parameter, columns
 from matstd.twin.numbers import rms
-from matstd.twin.record import IntArray, Run
+from matstd.twin.record import Run
 
 MAX_PASSES = 5
 SETTLED_CHANGE = 0.005
@@ -74,7 +72,7 @@ class Fit(Displayed):
     prior: Prior
     X: Array
     y: Array
-    used: BoolArray
+    used: Mask
     solution: Solution
     gross: GrossErrors
     noise: Noise
@@ -132,7 +130,7 @@ class Fit(Displayed):
         return z * self.u
 
     @cached_property
-    def unseen_setups(self) -> tuple[tuple[NDArray[np.int64], slice], ...]:
+    def unseen_setups(self) -> tuple[tuple[IntArray, slice], ...]:
         """Rows and parameters of every set-up, or further stylus, without a touch that was used."""
         t = self.run.touches
         rows = [(np.flatnonzero(s.here(t)), s.name) for s in placing_errors(t)]
@@ -156,12 +154,12 @@ class Fit(Displayed):
         return rms(self.residual[self.used])
 
     @cached_property
-    def test_rows(self) -> BoolArray:
+    def test_rows(self) -> Mask:
         """Rows that the file marks as held out, without gross errors, (N,)."""
         return (self.run.split == "test") & ~self.gross_test_rows
 
     @cached_property
-    def gross_test_rows(self) -> BoolArray:
+    def gross_test_rows(self) -> Mask:
         """Held-out rows that no fit of this run predicts, as gross errors are, (N,).
 
         Accidents come as often there as in the fit; where there are more the model is wrong there,
@@ -174,7 +172,7 @@ class Fit(Displayed):
         return far if far.sum() <= most else np.zeros_like(far)
 
     @cached_property
-    def groups(self) -> tuple[NDArray[np.int64], ...]:
+    def groups(self) -> tuple[IntArray, ...]:
         """Rows of the fit, by numbers within it, of every table pose in every set-up.
 
         With fewer than `MIN_POSES` poses blocks of touches in the order of probing instead, and so
@@ -220,7 +218,7 @@ class Fit(Displayed):
         return self.weight * self.held_out.rms * float(np.sqrt(np.mean(u**2 * variance)))
 
     @cached_property
-    def _is_setup(self) -> BoolArray:
+    def _is_setup(self) -> Mask:
         """Which parameters place the standard, (P,)."""
         first = len(self.model.parameters)
         count = sum(len(e.parameters) for e in self.setups)
@@ -373,7 +371,7 @@ def row_weight(memory: Memory | None) -> float:
     return float(np.sqrt(memory.per_independent))
 
 
-def noise_of(run: Run, solution: Solution, z: Array, used: BoolArray, factor: float) -> Noise:
+def noise_of(run: Run, solution: Solution, z: Array, used: Mask, factor: float) -> Noise:
     """Noise of a fit; z are its residuals over the stated uncertainty, all rows, (N,)."""
     ratio = float(z[used] @ z[used]) / max(solution.dof, 1e-9)
     replicates, count = replicate_factor(run, z, used)
@@ -387,7 +385,7 @@ def noise_of(run: Run, solution: Solution, z: Array, used: BoolArray, factor: fl
 
 
 def _solved(
-    X: Array, y: Array, train: BoolArray, gross: GrossErrors | None, shot: IntArray
+    X: Array, y: Array, train: Mask, gross: GrossErrors | None, shot: IntArray
 ) -> tuple[Solution, GrossErrors]:
     """Fit with gross errors looked for, or kept as they were found before."""
     if gross is None:

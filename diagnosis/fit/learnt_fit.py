@@ -14,9 +14,9 @@ from scipy.linalg import block_diag, rq, solve_triangular
 
 from matstd.diagnosis.fit.identification import Fit, fit_run, noise_of, row_weight
 from matstd.diagnosis.fit.prior import Prior
-from matstd.diagnosis.regression import BoolArray, GrossErrors, Memory, Solution, solve, whitener
+from matstd.diagnosis.regression import GrossErrors, Memory, Solution, solve, whitener
 from matstd.twin.effects import setup_errors
-from matstd.twin.frames import Array
+from matstd.twin.frames import Array, Mask
 from matstd.twin.model import Model, columns
 from matstd.twin.record import Run
 
@@ -28,7 +28,7 @@ class Learnt:
     estimates: Prior  # estimates of the machine's parameters, inner parameters held
     from_inner: Array  # root (P, T) of the covariance that T uncertain inner parameters add to it
     factor: float  # noise over the stated one, as the fit weighted with
-    gross: BoolArray  # rows that were set aside as gross errors, held out or not, (N,)
+    gross: Mask  # rows that were set aside as gross errors, held out or not, (N,)
     memory: Memory | None = None  # correlation of the noise; None for white noise
 
     @classmethod
@@ -105,7 +105,7 @@ def _solution(X: Array, y: Array, machine: int) -> Solution:
     return Solution(X @ root, R, phi, y - X @ phi)
 
 
-def _set_aside(gross: BoolArray, train: BoolArray) -> GrossErrors:
+def _set_aside(gross: Mask, train: Mask) -> GrossErrors:
     """Gross errors as they were found, whatever their size was."""
     score = np.where(gross, np.inf, 0.0)
     return GrossErrors(rows=gross & train, size=np.zeros(len(gross)), score=score, limit=1.0)

@@ -27,10 +27,9 @@ from scipy.linalg import cho_factor, cho_solve, solve_triangular
 from matstd.diagnosis.fit.prior import Prior
 from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.regression import PRIOR_DOF, Solution
-from matstd.twin.frames import Array
+from matstd.twin.frames import Array, IntArray
 from matstd.twin.machine import LETTERS, Chain, error_class
 from matstd.twin.model import Effect, Model, original_of, traits
-from matstd.twin.record import IntArray
 
 FACTORS = (1.0, 1.0 / 4.0, 1.0 / 16.0, 1.0 / 64.0)
 """On what is expected: from the class down to a machine of a laboratory."""

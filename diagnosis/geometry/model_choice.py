@@ -20,8 +20,7 @@ from matstd.diagnosis.geometry.changes import changed_since
 from matstd.diagnosis.geometry.functionals import functionals
 from matstd.diagnosis.geometry.quantities import Quantity
 from matstd.diagnosis.geometry.rows import Estimate, GeometryRow
-from matstd.diagnosis.regression import BoolArray
-from matstd.twin.frames import Array
+from matstd.twin.frames import Array, Mask
 from matstd.twin.library import parse_effect
 from matstd.twin.machine import Symbol
 from matstd.twin.model import Model, columns, traits
@@ -82,7 +81,7 @@ def _spreads(fit: Fit) -> dict[str, float]:
     return out
 
 
-def _solved(X: Array, y: Array, models: Sequence[BoolArray]) -> Iterator[tuple[float, Array]]:
+def _solved(X: Array, y: Array, models: Sequence[Mask]) -> Iterator[tuple[float, Array]]:
     """Log evidence and estimates of models that have some of the columns.
 
     Of ``y = X phi`` with unit noise and unit prior: ``-(log det M + y.y - phi.X'y) / 2`` with ``M =

@@ -5,16 +5,14 @@ from dataclasses import dataclass, replace
 from enum import Enum
 
 import numpy as np
-from numpy.typing import NDArray
 
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.laws.beginning import Beginning, log_odds
 from matstd.diagnosis.laws.policy import LawPolicy
 from matstd.diagnosis.policy import POLICY as DIAGNOSIS
 from matstd.diagnosis.regression import Memory, left_out, likely_memory
+from matstd.twin.frames import IntArray
 from matstd.twin.laws import Law
-
-IntArray = NDArray[np.int64]
 
 TIME_BLOCKS, PLACE_BLOCKS = 10, 5
 """Blocks of time, and of the range of a variable, that are left out one after the other."""

@@ -12,15 +12,12 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from matstd.diagnosis.laws.screening import Field
 from matstd.diagnosis.laws.space import MIN_OWN, Space
 from matstd.diagnosis.residual import Bearer
-from matstd.twin.frames import Array
+from matstd.twin.frames import Array, IntArray
 from matstd.twin.laws import SHAPES, Driver, Factor, Law, Shape, grid, shapes_of
-
-IntArray = NDArray[np.int64]
 
 COLUMNS_AT_A_TIME = 2000  # columns that are projected at a time
 

@@ -22,8 +22,9 @@ from matstd.diagnosis.laws.library import nearest_of_library
 from matstd.diagnosis.laws.policy import POLICY, LawPolicy
 from matstd.diagnosis.laws.search import Ground, Searched, search_law
 from matstd.diagnosis.laws.space import Space
-from matstd.diagnosis.regression import BoolArray, GrossErrors
+from matstd.diagnosis.regression import GrossErrors
 from matstd.twin.compute import one_blas_thread
+from matstd.twin.frames import Mask
 from matstd.twin.laws import Carrier, Law
 from matstd.twin.model import Model
 from matstd.twin.record import Run, Touches
@@ -149,7 +150,7 @@ def _tried(
     return _Tried(best, current, fit, refusal)
 
 
-def _alike(gross: GrossErrors) -> BoolArray:
+def _alike(gross: GrossErrors) -> Mask:
     """Gross errors of common size, which a law may explain, (N,)."""
     size = np.abs(gross.score)
     middle = np.median(size[gross.rows]) if gross.rows.any() else 0.0

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from matstd.diagnosis.fit import Fit
-from matstd.diagnosis.regression import PRIOR_DOF, BoolArray, solve
-from matstd.twin.frames import Array
+from matstd.diagnosis.regression import PRIOR_DOF, solve
+from matstd.twin.frames import Array, Mask
 from matstd.twin.record import Touches
 
 MIN_OWN = 1e-5
@@ -35,7 +35,7 @@ class Space:
     """
 
     touches: Touches  # all of the run
-    used: BoolArray  # rows that the fit rests upon, (N,)
+    used: Mask  # rows that the fit rests upon, (N,)
     u: Array  # standard uncertainty of all as stated, (N,), mm
     basis: Array  # what the model can imitate of the data: A (N, K) with ``A A^T = Q Q^T``
     r: Array  # residual over the stated uncertainty, (N,)

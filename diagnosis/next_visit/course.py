@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from matstd.twin.frames import Array
-from matstd.twin.record import IntArray, Touches
+from matstd.twin.frames import Array, IntArray
+from matstd.twin.record import Touches
 from matstd.twin.units import HOUR, MINUTE
 
 TIME_CONSTANTS = np.geomspace(0.03, 3.0, 25)

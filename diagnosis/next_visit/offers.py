@@ -4,10 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from matstd.diagnosis.regression import BoolArray
-from matstd.twin.frames import Array
+from matstd.twin.frames import Array, IntArray, Mask
 from matstd.twin.machine import inverse_linear
-from matstd.twin.record import IntArray, Run, Touches, linear_approach
+from matstd.twin.record import Run, Touches, linear_approach
 from matstd.twin.units import DEG
 
 MAX_OFFERS = 600  # touches among which a plan is chosen
@@ -74,7 +73,7 @@ def _clamped_anew(t: Touches) -> Touches:
     return replace(t, setups=setups, setup=setup)
 
 
-def _joined(t: Touches, point: IntArray, pose: IntArray, sides: Array) -> tuple[Touches, BoolArray]:
+def _joined(t: Touches, point: IntArray, pose: IntArray, sides: Array) -> tuple[Touches, Mask]:
     """Points of some rows at the rotary readings and in the set-up of others, and which are made.
 
     Args:
@@ -98,7 +97,7 @@ def _with_linear(touches: Touches, target: Array, q: Array) -> Array:
     return inverse_linear(touches.chain, target, q, touches.target)
 
 
-def _within(touches: Touches) -> BoolArray:
+def _within(touches: Touches) -> Mask:
     """Which touches lie within the travels of all axes."""
     limits = np.array([touches.chain.link(axis).range for axis in touches.chain.axes])
     inside = (touches.q >= limits[:, 0]) & (touches.q <= limits[:, 1])
@@ -118,7 +117,7 @@ def _from_side(touches: Touches) -> Array:
     return np.einsum("nij,ni->nj", turns[touches.setup], touches.reach.twist[:, tool, 2])
 
 
-def _known_side(known: Touches, offers: Touches) -> BoolArray:
+def _known_side(known: Touches, offers: Touches) -> Mask:
     """Offers that come to their feature from about where it was touched before, (M,)."""
     before, now = _from_side(known), _from_side(offers)
     out = np.zeros(len(offers), dtype=bool)

@@ -21,11 +21,10 @@ from matstd.diagnosis.next_visit.hypotheses import (
     predictions,
 )
 from matstd.diagnosis.next_visit.offers import visiting_touches
-from matstd.diagnosis.regression import BoolArray
 from matstd.twin.compute import one_blas_thread
-from matstd.twin.frames import Array
+from matstd.twin.frames import Array, IntArray, Mask
 from matstd.twin.model import Effect
-from matstd.twin.record import IntArray, Run, Touches
+from matstd.twin.record import Run, Touches
 
 SIZES, OFFERED_EACH = ((16, 128), (32, 256)), 24
 """Poses that are offered and touches of the plan: an hour on the machine, or two where an hour
@@ -191,14 +190,12 @@ def _tried(
     return out
 
 
-def _worst(apart: Array, seen: BoolArray) -> float:
+def _worst(apart: Array, seen: Mask) -> float:
     """Of the rivals that some visit distinguishes the least separation."""
     return float(np.min(apart[seen])) if seen.any() else float(np.max(apart))
 
 
-def _picked(
-    predicted: Sequence[Predicted], seen: BoolArray, touches: int, offered: int
-) -> IntArray:
+def _picked(predicted: Sequence[Predicted], seen: Mask, touches: int, offered: int) -> IntArray:
     """Rows of the plan in their order: those that separate, and some at every pose."""
     own, *others = predicted
     served = [one for one, is_seen in zip(others, seen, strict=True) if is_seen] or others

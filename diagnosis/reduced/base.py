@@ -12,8 +12,8 @@ from functools import cached_property
 import numpy as np
 
 from matstd.diagnosis.fit import Fit
-from matstd.diagnosis.regression import BoolArray, solve
-from matstd.twin.frames import Array
+from matstd.diagnosis.regression import solve
+from matstd.twin.frames import Array, Mask
 from matstd.twin.model import Effect, columns
 
 
@@ -24,7 +24,7 @@ class Base:
     fit: Fit  # the fit
     X: Array  # over the stated uncertainty, times the root of the prior, all rows, (N, P)
     y: Array  # deviations over the stated uncertainty less the prior's mean, all rows, (N,)
-    is_setup: BoolArray  # which columns place the standard, (P,)
+    is_setup: Mask  # which columns place the standard, (P,)
 
     @classmethod
     def of(cls, fit: Fit, switched: frozenset[str]) -> "Base":

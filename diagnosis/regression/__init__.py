@@ -12,7 +12,7 @@ from matstd.diagnosis.regression.gross import (
     robust_scale,
     shots,
 )
-from matstd.diagnosis.regression.linear import BoolArray, LeftOut, Solution, left_out, solve
+from matstd.diagnosis.regression.linear import LeftOut, Solution, left_out, solve
 from matstd.diagnosis.regression.memory import (
     Memory,
     Whitener,
@@ -29,7 +29,6 @@ from matstd.diagnosis.regression.noise import (
 
 __all__ = [
     "PRIOR_DOF",
-    "BoolArray",
     "GrossErrors",
     "LeftOut",
     "Memory",

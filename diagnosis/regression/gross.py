@@ -6,9 +6,9 @@ import numpy as np
 from scipy.special import gammainc, ndtri
 
 from matstd.diagnosis.policy import POLICY
-from matstd.diagnosis.regression.linear import BoolArray, Solution, solve
-from matstd.twin.frames import Array
-from matstd.twin.record import IntArray, Touches
+from matstd.diagnosis.regression.linear import Solution, solve
+from matstd.twin.frames import Array, IntArray, Mask
+from matstd.twin.record import Touches
 
 MIN_EVEN_SHOTS = 7
 """Least number of shots whose sizes and gaps can be called even; of four it happens by chance."""
@@ -29,13 +29,13 @@ MIN_DOF = 10.0  # with fewer degrees of freedom there is no scale by which a tou
 class GrossErrors:
     """Result of the test of every touch against the fit to the others."""
 
-    rows: BoolArray  # which touches are gross errors, (N,)
+    rows: Mask  # which touches are gross errors, (N,)
     size: Array  # left-out prediction error of every touch, (N,), in units of the stated noise
     score: Array  # the same in units of its standard deviation, (N,)
     limit: float  # score above which a touch is a gross error
     # whether more stood out than accidents can explain, so that none was taken out
     too_many: bool = False
-    standing: BoolArray | None = None  # those that stood out then, (N,); None where none did
+    standing: Mask | None = None  # those that stood out then, (N,); None where none did
 
     @property
     def are_many(self) -> bool:
@@ -48,7 +48,7 @@ def robust_scale(values: Array) -> float:
     return float(1.4826 * np.median(np.abs(values))) if len(values) else 0.0
 
 
-def _left_out_each(X: Array, y: Array, fit: Solution, used: BoolArray) -> tuple[Array, Array]:
+def _left_out_each(X: Array, y: Array, fit: Solution, used: Mask) -> tuple[Array, Array]:
     """Prediction error of every row by the other used rows, and its variance, (N,) each."""
     h = np.minimum(fit.leverage, 1.0 - 1e-9)
     error, variance = np.zeros(len(y)), np.ones(len(y))
@@ -75,7 +75,7 @@ def shots(touches: Touches) -> IntArray:
 
 
 def find_gross(
-    X: Array, y: Array, allowed: BoolArray, shot: IntArray | None = None
+    X: Array, y: Array, allowed: Mask, shot: IntArray | None = None
 ) -> tuple[Solution, GrossErrors]:
     """Fit and gross errors together: take out what stands out, take back what fits after all.
 
@@ -129,7 +129,7 @@ def find_gross(
     return solve(X[allowed], y[allowed]), kept
 
 
-def _are_accidents(out: BoolArray, allowed: BoolArray, score: Array, shot: IntArray) -> bool:
+def _are_accidents(out: Mask, allowed: Mask, score: Array, shot: IntArray) -> bool:
     """Whether many touches that stand out look like accidents.
 
     They are far from the rest, differ in size, come at uneven gaps, and are not together.
@@ -155,7 +155,7 @@ def _are_accidents(out: BoolArray, allowed: BoolArray, score: Array, shot: IntAr
     )
 
 
-def _alone(far: BoolArray, shot: IntArray) -> BoolArray:
+def _alone(far: Mask, shot: IntArray) -> Mask:
     """Rows of those shots with a far row that are in no crowd of such; the run is in the order of
     probing.
     """  # noqa: D205

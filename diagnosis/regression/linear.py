@@ -12,12 +12,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import qr, solve_triangular
 
-from matstd.twin.frames import Array
-
-BoolArray = NDArray[np.bool_]
+from matstd.twin.frames import Array, IntArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,7 +98,7 @@ class LeftOut:
         return float(np.sqrt(self.squared / max(len(self.error), 1)))
 
 
-def left_out(Q: Array, residual: Array, groups: Sequence[NDArray[np.int64]]) -> LeftOut:
+def left_out(Q: Array, residual: Array, groups: Sequence[IntArray]) -> LeftOut:
     """Leave one group out at a time, in closed form.
 
     With ``M = 1 - Q Q^T`` over the rows of a group, the prediction error of the group by a fit to

@@ -13,10 +13,9 @@ import numpy as np
 from scipy.linalg import cho_factor, cho_solve, solve_banded
 from scipy.optimize import minimize_scalar
 
-from matstd.diagnosis.regression.linear import BoolArray
 from matstd.diagnosis.regression.noise import PRIOR_DOF
-from matstd.twin.frames import Array
-from matstd.twin.record import IntArray, Touches
+from matstd.twin.frames import Array, IntArray, Mask
+from matstd.twin.record import Touches
 
 MAX_ROWS_MEMORY = 2500
 """Most rows that a memory is estimated from; more would not improve it and take long."""
@@ -63,7 +62,7 @@ class Memory:
 class Whitener:
     """Filter that makes noise with memory white, for the rows of one fit."""
 
-    used: BoolArray  # rows of the run that the fit uses, n of them, (N,)
+    used: Mask  # rows of the run that the fit uses, n of them, (N,)
     u: Array  # their standard uncertainty, (n,), mm
     # rows such that each, but the first of a chain, stands next to the one before it
     order: IntArray
@@ -111,7 +110,7 @@ class Whitener:
         return float(-np.log(self.alone).sum())
 
 
-def whitener(memory: Memory, touches: Touches, u: Array, used: BoolArray) -> Whitener:
+def whitener(memory: Memory, touches: Touches, u: Array, used: Mask) -> Whitener:
     """The filter of a memory for the rows that a fit uses.
 
     Args:
@@ -124,7 +123,7 @@ def whitener(memory: Memory, touches: Touches, u: Array, used: BoolArray) -> Whi
     return Whitener(used=used, u=u[used], order=order, before=before, kept=kept)
 
 
-def _before(touches: Touches, used: BoolArray, by_place: bool) -> tuple[IntArray, IntArray, Array]:
+def _before(touches: Touches, used: Mask, by_place: bool) -> tuple[IntArray, IntArray, Array]:
     """Order of the used rows, the one before each, -1 for none, and the time between, s."""
     rows = np.flatnonzero(used)
     time = touches.time[rows]
@@ -143,7 +142,7 @@ def _places(touches: Touches) -> IntArray:
     return np.unique(key, axis=0, return_inverse=True)[1].reshape(-1)
 
 
-def _kinds(touches: Touches, used: BoolArray) -> Iterator[Memory]:
+def _kinds(touches: Touches, used: Mask) -> Iterator[Memory]:
     """Memories that may be: from touch to touch or with time, over all touches or place by place.
 
     Place by place only where places come again so often that most touches have one before.
@@ -161,7 +160,7 @@ def _kinds(touches: Touches, used: BoolArray) -> Iterator[Memory]:
 
 
 def likely_memory(
-    touches: Touches, u: Array, used: BoolArray, X: Array, y: Array
+    touches: Touches, u: Array, used: Mask, X: Array, y: Array
 ) -> tuple[Memory, float]:
     """The memory that suits a run best beside a model, and its gain of log likelihood over none.
 
@@ -193,7 +192,7 @@ def likely_memory(
     return best
 
 
-def _stretch(touches: Touches, used: BoolArray) -> BoolArray:
+def _stretch(touches: Touches, used: Mask) -> Mask:
     """The used rows, of a long run a stretch in its middle: memory is between neighbours."""
     rows = np.flatnonzero(used)
     rows = rows[np.argsort(touches.time[rows], kind="stable")]

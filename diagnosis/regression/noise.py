@@ -5,9 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from matstd.diagnosis.policy import POLICY
-from matstd.diagnosis.regression.linear import BoolArray
-from matstd.twin.frames import Array
-from matstd.twin.record import Instrument, IntArray, Run
+from matstd.twin.frames import Array, IntArray, Mask
+from matstd.twin.record import Instrument, Run
 
 PRIOR_DOF = 4.0
 """Weight of the stated uncertainty, in degrees of freedom: it decides where touches are few."""
@@ -46,7 +45,7 @@ def noise_factor(chi2: float, dof: float) -> float:
     return float(np.sqrt((chi2 + PRIOR_DOF) / (max(dof, 0.0) + PRIOR_DOF)))
 
 
-def replicate_groups(run: Run, rows: BoolArray, in_any_pose: bool = False) -> IntArray:
+def replicate_groups(run: Run, rows: Mask, in_any_pose: bool = False) -> IntArray:
     """Number of the group of replicates of every row, (N,): same place, pose and last motions.
 
     Rows outside `rows` get -1.
@@ -68,7 +67,7 @@ def replicate_groups(run: Run, rows: BoolArray, in_any_pose: bool = False) -> In
     return group
 
 
-def replicate_factor(run: Run, z: Array, rows: BoolArray) -> tuple[float | None, int]:
+def replicate_factor(run: Run, z: Array, rows: Mask) -> tuple[float | None, int]:
     """Noise over stated noise from replicates alone, with its degrees of freedom.
 
     Args:

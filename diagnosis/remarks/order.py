@@ -7,8 +7,8 @@ import numpy as np
 from matstd.diagnosis.fit import Fit, fit_run
 from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.regression import f_probability, solve
-from matstd.twin.frames import Array
-from matstd.twin.record import Instrument, IntArray
+from matstd.twin.frames import Array, IntArray
+from matstd.twin.record import Instrument
 
 MIN_MOMENTS = 20  # moments (rows of the file, or poses) from which a run has a before and an after
 COMPONENTS = 3  # components of a displacement

@@ -9,10 +9,8 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from matstd.diagnosis.evidence import ResidualSpace
-from matstd.diagnosis.regression import BoolArray
 from matstd.diagnosis.residual.patterns import variables
-from matstd.twin.frames import Array
-from matstd.twin.record import IntArray
+from matstd.twin.frames import Array, IntArray, Mask
 
 MAX_VARIABLES = 3  # most variables that bound a region
 MIN_TOUCHES_OF_REGION = 12  # fewest touches of a region
@@ -57,12 +55,12 @@ class Bounded:
         return len(self.labels) or len(self.cuts) + 1
 
     @cached_property
-    def is_offered(self) -> BoolArray:
+    def is_offered(self) -> Mask:
         """Whether bins i to k are a region, (B, B); of a label only single ones."""
         square = np.ones((self.size, self.size), dtype=bool)
         return np.eye(self.size, dtype=bool) if self.labels else np.triu(square)
 
-    def inside(self, first: int, last: int) -> BoolArray:
+    def inside(self, first: int, last: int) -> Mask:
         """Touches in some bins, both included, (N,)."""
         return np.asarray((self.bins >= first) & (self.bins <= last))
 
@@ -134,7 +132,7 @@ Box = dict[int, Bins]  # first and last bin of every variable that bounds a regi
 class Measure(Protocol):
     """What a region gains if something of its own is allowed in it."""
 
-    def gains(self, rows: BoolArray, variable: Bounded) -> Array:
+    def gains(self, rows: Mask, variable: Bounded) -> Array:
         """Log likelihood gained within some touches and bins i to k of a variable, (B, B)."""
 
 
@@ -189,7 +187,7 @@ def _worth(found: Found) -> float:
     return found.gain - float(np.log(found.tried))
 
 
-def rows_in(known: Sequence[Bounded], box: Box, n: int) -> BoolArray:
+def rows_in(known: Sequence[Bounded], box: Box, n: int) -> Mask:
     """Of n touches those in a box, (N,)."""
     rows = np.ones(n, dtype=bool)
     for v, bins in box.items():

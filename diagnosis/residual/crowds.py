@@ -4,15 +4,16 @@ import numpy as np
 from scipy.spatial import cKDTree
 from scipy.special import gammainc
 
-from matstd.diagnosis.regression import BoolArray, shots
+from matstd.diagnosis.regression import shots
 from matstd.diagnosis.residual.patterns import pairs, variables
+from matstd.twin.frames import Mask
 from matstd.twin.record import Touches
 
 NEIGHBOURS = 5  # neighbours of a touch that are looked at
 MIN_GROSS = 3  # fewer gross errors than this make no crowd
 
 
-def crowds(touches: Touches, allowed: BoolArray, gross: BoolArray) -> dict[tuple[str, str], float]:
+def crowds(touches: Touches, allowed: Mask, gross: Mask) -> dict[tuple[str, str], float]:
     """Probability, pair of variables by pair, that gross errors lie so close to one another.
 
     Counted are the pairs of gross errors that are among each other's nearest touches; if every

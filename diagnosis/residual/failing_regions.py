@@ -18,7 +18,7 @@ import numpy as np
 from matstd.diagnosis.evidence import ResidualSpace
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.policy import POLICY
-from matstd.diagnosis.regression import BoolArray, f_probability, f_tail
+from matstd.diagnosis.regression import f_probability, f_tail
 from matstd.diagnosis.residual.boxes import (
     MAX_SHARE,
     MIN_TOUCHES_OF_REGION,
@@ -34,10 +34,9 @@ from matstd.diagnosis.residual.boxes import (
 from matstd.diagnosis.residual.carriers import Bearer, bearers
 from matstd.diagnosis.residual.partial_residuals import MIN_VIEW
 from matstd.diagnosis.residual.patterns import FULL_BELOW
-from matstd.twin.frames import Array
+from matstd.twin.frames import Array, IntArray, Mask
 from matstd.twin.laws import carrier_of
 from matstd.twin.numbers import rms
-from matstd.twin.record import IntArray
 
 MIN_OWN = 0.02
 """Share of the square of a region's column that the model must leave: of a region as wide as the
@@ -63,7 +62,7 @@ class Region:
 
     # all of them hold in it; bounds in the unit of the column, one of each side for a column
     conditions: tuple[Condition, ...]
-    rows: BoolArray  # touches in it, (N,)
+    rows: Mask  # touches in it, (N,)
     wrong: Wrong | None  # the error that is off; None where touches scatter more than others
     mean: float  # mean residual of the touches in it, along the normal, mm
     u: float  # standard uncertainty of the mean, from the noise, mm
@@ -114,7 +113,7 @@ class _Constant:
     column: Array  # of the carrier, all touches, (N,), mm per mm or rad
     drawing: Array | None  # what draws the region, (n + P,); None for the residual
 
-    def gains(self, rows: BoolArray, variable: Bounded) -> Array:
+    def gains(self, rows: Mask, variable: Bounded) -> Array:
         """As of `Measure`."""
         space = self.space
         own, whole, along = self._sums(rows, variable)
@@ -128,7 +127,7 @@ class _Constant:
         drop = np.where(sound, along**2 / np.where(sound, own, 1.0), 0.0)
         return _gain(space, drop) if self.drawing is None else 0.5 * drop
 
-    def _sums(self, rows: BoolArray, variable: Bounded) -> tuple[Array, Array, Array]:
+    def _sums(self, rows: Mask, variable: Bounded) -> tuple[Array, Array, Array]:
         """The column in bins i to k: its square beside the model, its square, and its drawing.
 
         Arrays (B, B). In white noise a touch counts in its own bin alone: sums of rows, and no
@@ -246,9 +245,9 @@ class _Scatter(NamedTuple):
     """A larger variance in a region."""
 
     squares: Array  # of the residual over its own standard deviation, (N,); zero where not in use
-    used: BoolArray  # touches in use, (N,)
+    used: Mask  # touches in use, (N,)
 
-    def gains(self, rows: BoolArray, variable: Bounded) -> Array:
+    def gains(self, rows: Mask, variable: Bounded) -> Array:
         """As of `Measure`."""
         own, k = variable.bins[rows & self.used], variable.size
         counts = summed(np.bincount(own, minlength=k))

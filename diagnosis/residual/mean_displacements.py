@@ -3,8 +3,7 @@
 import numpy as np
 
 from matstd.diagnosis.fit import Fit
-from matstd.twin.frames import Array
-from matstd.twin.record import IntArray
+from matstd.twin.frames import Array, IntArray
 
 MIN_SINGULAR_VALUE = 0.05
 """Smallest singular value of the normals, over the root of their number, of touches from all

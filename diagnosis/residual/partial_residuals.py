@@ -16,9 +16,9 @@ import numpy as np
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.residual.patterns import variables
 from matstd.twin.effects import normal_in_tool
-from matstd.twin.frames import Array
+from matstd.twin.frames import Array, IntArray
 from matstd.twin.model import Effect, Where, columns, inner_values, traits
-from matstd.twin.record import IntArray, Touches
+from matstd.twin.record import Touches
 from matstd.twin.units import DEG
 
 LETTERS = "XYZABC"

@@ -14,8 +14,7 @@ from matstd.diagnosis.evidence import EffectSet, ResidualSpace
 from matstd.diagnosis.regression import PRIOR_DOF
 from matstd.diagnosis.residual.patterns import Pattern, patterns, thinned
 from matstd.diagnosis.residual.quadratic import ratio_probability
-from matstd.twin.frames import Array
-from matstd.twin.record import IntArray
+from matstd.twin.frames import Array, IntArray
 
 PATTERN_VARIANCES = np.geomspace(0.3, 3e4, 11) ** 2
 """Variances of a pattern over the noise variance of one touch that are tried for its evidence."""

@@ -12,8 +12,8 @@ from itertools import combinations
 import numpy as np
 
 from matstd.diagnosis.evidence import ResidualSpace
-from matstd.twin.frames import Array
-from matstd.twin.record import IntArray, Touches
+from matstd.twin.frames import Array, IntArray
+from matstd.twin.record import Touches
 
 ORDER_ALONE = 12  # half waves over the range of a variable by itself
 ORDER_PAIR = 9  # half waves of both variables of a pair together

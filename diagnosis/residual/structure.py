@@ -19,8 +19,8 @@ from matstd.diagnosis.regression import PRIOR_DOF
 from matstd.diagnosis.residual.crowds import crowds
 from matstd.diagnosis.residual.pattern_tests import PatternTests, TestedPattern
 from matstd.diagnosis.residual.waves import Wave, best_wave
-from matstd.twin.frames import Array
-from matstd.twin.record import IntArray, Touches
+from matstd.twin.frames import Array, IntArray
+from matstd.twin.record import Touches
 
 FEATURE_DISTANCE = 1e4
 """Distance (mm) by which different features are held apart in the search for neighbours."""

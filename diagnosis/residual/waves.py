@@ -8,8 +8,8 @@ import numpy as np
 from matstd.diagnosis.evidence import EffectSet
 from matstd.diagnosis.regression import f_probability
 from matstd.diagnosis.residual.patterns import directions
-from matstd.twin.frames import Array
-from matstd.twin.record import IntArray, Touches
+from matstd.twin.frames import Array, IntArray
+from matstd.twin.record import Touches
 
 MIN_PERIOD_TOUCHES = 4.0  # shortest period, in mean distances of touches
 

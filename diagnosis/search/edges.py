@@ -13,10 +13,10 @@ import numpy as np
 
 from matstd.diagnosis.evidence import ScaledEffect
 from matstd.diagnosis.policy import POLICY
-from matstd.diagnosis.regression import BoolArray, GrossErrors
-from matstd.twin.frames import Array
+from matstd.diagnosis.regression import GrossErrors
+from matstd.twin.frames import Array, IntArray, Mask
 from matstd.twin.model import inner_values
-from matstd.twin.record import IntArray, Touches
+from matstd.twin.record import Touches
 
 MAX_EDGE_LENGTH = 8
 """Touches from an edge that are looked at; a slip farther inside is a crowd to begin with."""
@@ -26,7 +26,7 @@ MIN_EDGE_ERRORS = 2  # gross errors at an edge that may be no accidents
 
 def unexplained_near_slip(
     touches: Touches, gross: GrossErrors, effects: Sequence[ScaledEffect]
-) -> BoolArray:
+) -> Mask:
     """Gross errors that a slip may explain, (N,).
 
     At the edges of a set-up those that so few accidents would hardly ever form; at the instant of a
@@ -57,7 +57,7 @@ def unexplained_near_slip(
     return out
 
 
-def without(gross: GrossErrors, rows: BoolArray) -> GrossErrors:
+def without(gross: GrossErrors, rows: Mask) -> GrossErrors:
     """Gross errors less some rows."""
     return replace(gross, rows=gross.rows & ~rows)
 

@@ -16,9 +16,8 @@ from matstd.diagnosis.accuracy import domains
 from matstd.diagnosis.evidence import EffectSet, ResidualSpace, ScaledEffect, Signatures
 from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.search.missing_driver import is_unrecorded
-from matstd.twin.frames import Array
+from matstd.twin.frames import Array, IntArray
 from matstd.twin.model import Effect, is_tunable
-from matstd.twin.record import IntArray
 
 LEFT_OUT = ("time_s", "setup")
 """Domains of which blocks are left out: an effect may act in one half of a travel alone."""

@@ -27,7 +27,6 @@ from matstd.diagnosis.evidence import (
     signatures,
 )
 from matstd.diagnosis.policy import POLICY
-from matstd.diagnosis.regression import BoolArray
 from matstd.diagnosis.search.members import (
     EffectSubset,
     Member,
@@ -45,7 +44,7 @@ from matstd.diagnosis.search.missing_driver import (
 )
 from matstd.diagnosis.search.refine import refined_set
 from matstd.diagnosis.search.screening import Budget
-from matstd.twin.frames import Array
+from matstd.twin.frames import Array, Mask
 from matstd.twin.machine import Chain
 from matstd.twin.model import Effect, original_of, traits
 from matstd.twin.thermal import drives
@@ -161,7 +160,7 @@ class Search:
         return [v for v in self._scored(chosen)[1] if pool.names[pool.owner[v]] not in taken]
 
     @cached_property
-    def _is_unrecorded(self) -> BoolArray:
+    def _is_unrecorded(self) -> Mask:
         """Which variants follow a driver that was not recorded, (V,)."""
         return np.array([is_unrecorded(v) for v in self.pool.variants], dtype=bool)
 

@@ -11,10 +11,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from matstd.diagnosis.fit import Prior, fit_run
-from matstd.diagnosis.regression import BoolArray
 from matstd.twin.effects import body_errors, placing_errors
 from matstd.twin.errors import NotEnoughData
-from matstd.twin.frames import Array
+from matstd.twin.frames import Array, Mask
 from matstd.twin.model import Model, columns
 from matstd.twin.record import Labels, Run, Touches
 from matstd.twin.units import DEG
@@ -48,8 +47,8 @@ class Visits:
 
 def visits_of(
     runs: Sequence[Run],
-    is_task: Sequence[BoolArray],
-    is_datum: Sequence[BoolArray],
+    is_task: Sequence[Mask],
+    is_datum: Sequence[Mask],
     calibration: Array,
     model: Model | None = None,
     estimates: Prior | None = None,
@@ -104,11 +103,11 @@ def visits_of(
 
 def _placed(
     run: Run,
-    is_task: BoolArray,
-    is_datum: BoolArray,
+    is_task: Mask,
+    is_datum: Mask,
     model: Model | None,
     estimates: Prior | None,
-) -> tuple[Array, BoolArray]:
+) -> tuple[Array, Mask]:
     """Deviations seen from the datum features, (N,), mm, and which of them are gross errors."""
     if not is_datum.any():
         raise NotEnoughData("no touch on a ball or the datum plane places the standard")
@@ -139,7 +138,7 @@ def _size_columns(touches: Touches) -> Array:
     return columns(sizes, touches) * [p.sd for one in sizes for p in one.parameters]
 
 
-def _placed_columns(run: Run, is_datum: BoolArray, calibration: Array) -> Array:
+def _placed_columns(run: Run, is_datum: Mask, calibration: Array) -> Array:
     """What calibration does to deviations that are seen from the datum features, (N, Q), mm."""
     S = columns(placing_errors(run.touches), run.touches)
     placed = np.linalg.lstsq(S[is_datum], calibration[is_datum], rcond=1e-9)[0]

@@ -5,13 +5,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from matstd.importers.arms.orientation import oriented, rotations
 from matstd.importers.sheets import ANGLES, MM, Sheet
 from matstd.twin.errors import BadFile, DesignError
-from matstd.twin.frames import Array
-from matstd.twin.record import IntArray
+from matstd.twin.frames import Array, IntArray, Mask
 
 _JOINT = re.compile(
     r"(?:\A|[^a-z])(?:j|joint|axis|achse|gelenk|q|theta|a)[\s_.]*(\d{1,2})(?!\d)", re.IGNORECASE
@@ -45,9 +43,9 @@ class ArmTable:
     repeat: IntArray | None = None  # number of the repetition, (N,)
 
     @property
-    def shots(self) -> NDArray[np.bool_]:
+    def shots(self) -> Mask:
         """Which reflectors were measured at which poses, (N, K)."""
-        is_whole: NDArray[np.bool_] = np.all(np.isfinite(self.q), axis=1)
+        is_whole: Mask = np.all(np.isfinite(self.q), axis=1)
         return np.all(np.isfinite(self.place), axis=2) & is_whole[:, None]
 
 

@@ -21,12 +21,11 @@ from matstd.importers.arms.placement import Placement, located
 from matstd.importers.arms.table import ArmTable, coupled, read_arm
 from matstd.importers.sheets import Sheet, loads, own_columns, seconds, temperatures
 from matstd.twin.errors import DesignError, NotEnoughData
-from matstd.twin.frames import Array, inverse
+from matstd.twin.frames import Array, IntArray, inverse
 from matstd.twin.machine import Chain, table_to_tool
 from matstd.twin.numbers import rms
 from matstd.twin.record import (
     Instrument,
-    IntArray,
     Labels,
     Run,
     Setup,

@@ -31,8 +31,7 @@ from matstd.importers.sheets import (
     unit_of_column,
 )
 from matstd.twin.errors import BadFile
-from matstd.twin.frames import Array
-from matstd.twin.record import IntArray
+from matstd.twin.frames import Array, IntArray
 
 SLOPE_TOLERANCE = 0.1
 """Values with a slope over the targets within this of 1 are positions: no axis is wrong by a

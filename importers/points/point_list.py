@@ -6,8 +6,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from matstd.importers.sheets import stacked
-from matstd.twin.frames import Array
-from matstd.twin.record import IntArray, Labels
+from matstd.twin.frames import Array, IntArray
+from matstd.twin.record import Labels
 
 MISPLACED_RATIO = 2.0
 """A point this many times nearer to another one's place than to its own is misplaced."""

@@ -18,8 +18,7 @@ import numpy as np
 
 from matstd.importers.sheets import ANGLES, MM, Sheet, read_sheet
 from matstd.twin.errors import BadFile
-from matstd.twin.frames import Array
-from matstd.twin.record import IntArray
+from matstd.twin.frames import Array, IntArray
 
 _LINE = r"line|scan|pass|track|bahn|zeile"
 _TIME = r"(?:t|time|zeit|timestamp)(?:[\s_]*[\[(]?(?:ms|sec|s)[\])]?)?"

@@ -5,8 +5,7 @@ import re
 import numpy as np
 
 from matstd.importers.sheets.sheet import Sheet
-from matstd.twin.frames import Array
-from matstd.twin.record import IntArray
+from matstd.twin.frames import Array, IntArray
 
 _DOWN = re.compile(
     r"down|\bdn\b|dwn|↓|-|−|\bneg|\brev|\bb(ack|wd|kw)|rück|ruck|zur|\bret", re.IGNORECASE

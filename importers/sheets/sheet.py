@@ -7,11 +7,10 @@ from functools import cached_property
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from matstd.importers.sheets.units import bare, unit_of_column
 from matstd.twin.errors import BadFile
-from matstd.twin.frames import Array
+from matstd.twin.frames import Array, IntArray
 
 LARGEST_CELL = 1e15
 """Largest number of a cell: above milliseconds of a clock, and squares do not overflow."""
@@ -79,7 +78,7 @@ class Sheet:
             raise BadFile(self.path, "header", found, expected)
         return self.numbers(column) * units[unit]
 
-    def whole_numbers(self, column: int, what: str) -> NDArray[np.int64]:
+    def whole_numbers(self, column: int, what: str) -> IntArray:
         """Whole numbers of a column, (N,); raises BadFile, which expects `what`."""
         numbers = self.numbers(column)
         odd = np.flatnonzero(~np.isfinite(numbers) | (numbers != np.round(numbers)))

@@ -3,10 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from matstd.twin.effects import HigherOrder
-from matstd.twin.frames import Array
+from matstd.twin.frames import Array, Mask
 from matstd.twin.machine import Family, Link, Symbol
 from matstd.twin.model import Model, columns, traits
 from matstd.twin.record import Touches
@@ -80,7 +79,7 @@ def _degree(symbol: Symbol, link: Link, A: Array, size: Array) -> Degree:
     return Degree(symbol=symbol.name, supported=supported, largest=largest, u=u, unit=unit)
 
 
-def _run(is_supported: NDArray[np.bool_]) -> tuple[int, ...]:
+def _run(is_supported: Mask) -> tuple[int, ...]:
     """Degrees that are supported together, the first being 1 or else 2.
 
     Degree k + 1 (columns) with n + 1 degrees free (rows), (n, k).

@@ -26,8 +26,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from matstd.information.power.quadratic import exceedance, quantile
-from matstd.twin.frames import Array
-from matstd.twin.record import IntArray
+from matstd.twin.frames import Array, IntArray
 
 
 def low_rank(

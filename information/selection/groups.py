@@ -4,12 +4,10 @@ from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from matstd.information.criteria import DesignCriterion, Tangent
 from matstd.twin.compute import blocks
-from matstd.twin.frames import Array
-from matstd.twin.record import IntArray
+from matstd.twin.frames import Array, IntArray, Mask
 
 _GROUPS_A_BLOCK, _ROWS_A_BLOCK = 10, 4000  # looked at together: in the cache
 
@@ -21,7 +19,7 @@ def best_groups(
     count: int,
     take: int,
     start: Array | None = None,
-    apart: NDArray[np.bool_] | None = None,
+    apart: Mask | None = None,
     begin: Sequence[int] = (),
 ) -> list[int]:
     """Choose groups of rows that belong together (the touches of a patch, of a table pose).
@@ -75,9 +73,7 @@ class _Groups:
         self.edges = np.searchsorted(group[order], np.arange(self.count + 1))
         self.brought: dict[int, Array] = {}
 
-    def best(
-        self, chosen: list[int], fits: NDArray[np.bool_], only: int | None = None
-    ) -> int | None:
+    def best(self, chosen: list[int], fits: Mask, only: int | None = None) -> int | None:
         """The group that helps most beside those chosen, and whose rows are then remembered."""
         sizes = np.diff(self.edges)
         free = (np.all(fits[chosen], axis=0) if chosen else np.ones(self.count, bool)) & (sizes > 0)

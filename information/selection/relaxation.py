@@ -19,10 +19,9 @@ from scipy.linalg import block_diag
 
 from matstd.information.criteria import DesignCriterion, Tangent
 from matstd.information.selection.shares import cells, keeps, largest_sum, rank_in_cell
-from matstd.information.selection.touch_selection import Mask, Quota
+from matstd.information.selection.touch_selection import Quota
 from matstd.twin.errors import DesignError
-from matstd.twin.frames import Array
-from matstd.twin.record import IntArray
+from matstd.twin.frames import Array, IntArray, Mask
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,10 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import csr_array, vstack
 
-from matstd.information.selection.touch_selection import Mask, Quota
+from matstd.information.selection.touch_selection import Quota
 from matstd.twin.errors import DesignError
-from matstd.twin.frames import Array
-from matstd.twin.record import IntArray
+from matstd.twin.frames import Array, IntArray, Mask
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,14 +13,10 @@ tangent. A greedy choice is improved by exchanges until none that is tried helps
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from matstd.information.criteria import DesignCriterion, RowStep, Tangent
 from matstd.twin.errors import DesignError
-from matstd.twin.frames import Array
-from matstd.twin.record import IntArray
-
-Mask = NDArray[np.bool_]
+from matstd.twin.frames import Array, IntArray, Mask
 
 _REFRESH = 40  # updates after which rounding is swept out
 _MIN_RELATIVE_GAIN = 1e-6  # relative gain below which an exchange is not made

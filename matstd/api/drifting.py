@@ -37,8 +37,7 @@ from matstd.twin.compute import Progress, silent
 from matstd.twin.display import Displayed
 from matstd.twin.errors import BadArgument, BadFile, DesignError
 from matstd.twin.files import results_folder
-from matstd.twin.frames import Array
-from matstd.twin.record import IntArray
+from matstd.twin.frames import Array, IntArray
 from matstd.twin.units import HOUR, MINUTE, UM
 
 SOMETIMES = (

@@ -3,14 +3,13 @@
 import numpy as np
 
 from matstd.artefact.body import Meeting, Standard, contact
-from matstd.artefact.reach import Mask
 from matstd.artefact.tool import solid_hull, swing_height, top_height
 from matstd.probe_paths.control import Move, ProbeStep, ReadProgram
 from matstd.probe_paths.plan import SMALLEST_GAP, ToolClearance, stroke_gaps
 from matstd.twin.errors import BadFile
-from matstd.twin.frames import Array, apply, inverse, turn
+from matstd.twin.frames import Array, IntArray, Mask, apply, inverse, turn
 from matstd.twin.machine import Chain, linear_directions, tip
-from matstd.twin.record import IntArray, Labels
+from matstd.twin.record import Labels
 
 
 def check_moves(program: ReadProgram, standard: Standard, chain: Chain) -> None:

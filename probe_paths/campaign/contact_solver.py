@@ -7,13 +7,12 @@ from datetime import datetime
 import numpy as np
 
 from matstd.artefact.body import DatumSphere, Meeting, Standard, contact
-from matstd.artefact.reach import Mask
 from matstd.probe_paths.campaign.disturbances import Disturbance
 from matstd.probe_paths.control import Clock, ReadProgram
 from matstd.probe_paths.language import Dialect
-from matstd.twin.frames import Array, apply, inverse, turn
+from matstd.twin.frames import Array, IntArray, Mask, apply, inverse, turn
 from matstd.twin.machine import Chain, Contribution, exact_tip, linear_directions, tip
-from matstd.twin.record import IntArray, Setup, Touches
+from matstd.twin.record import Setup, Touches
 from matstd.twin.units import NM
 
 CONTACT_TOLERANCE = 1e-3 * NM  # the ball touches when its gap is this small, mm

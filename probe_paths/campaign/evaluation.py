@@ -17,10 +17,9 @@ from matstd.probe_paths.control import UNDATED, LogPart
 from matstd.probe_paths.language import Dialect
 from matstd.probe_paths.plan import LINEAR, Probe, ProgramFrame
 from matstd.twin.errors import BadFile, NotEnoughData
-from matstd.twin.frames import Array, apply, inverse, pose, rotation
+from matstd.twin.frames import Array, IntArray, apply, inverse, pose, rotation
 from matstd.twin.machine import Chain, tip
 from matstd.twin.record import (
-    IntArray,
     Labels,
     Run,
     Setup,

@@ -12,8 +12,7 @@ from matstd.probe_paths.campaign.as_programmed import check_numbers
 from matstd.probe_paths.campaign.stamps import check_log_stamp
 from matstd.probe_paths.control import UNDATED, LogPart
 from matstd.twin.errors import BadFile
-from matstd.twin.frames import Array
-from matstd.twin.record import IntArray
+from matstd.twin.frames import Array, IntArray
 from matstd.twin.units import NM
 
 LARGEST_OFFSET = 0.1

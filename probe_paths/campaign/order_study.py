@@ -26,11 +26,11 @@ from matstd.probe_paths.plan import (
     short_order,
 )
 from matstd.twin.errors import NotReachable
-from matstd.twin.frames import Array
+from matstd.twin.frames import Array, IntArray
 from matstd.twin.library import parse_effect
 from matstd.twin.machine import Chain
 from matstd.twin.model import Effect, Model, columns
-from matstd.twin.record import IntArray, Setup, Touches, at_poses
+from matstd.twin.record import Setup, Touches, at_poses
 
 _PRIOR_FACTOR = 1e3
 """Prior of the sought effects in units of their typical size: almost uninformative."""

@@ -18,8 +18,7 @@ from matstd.probe_paths.control.log_clock import LogClock
 from matstd.probe_paths.language import LOG_HEAD
 from matstd.probe_paths.plan import Heading, parse_heading
 from matstd.twin.errors import BadFile
-from matstd.twin.frames import Array
-from matstd.twin.record import IntArray
+from matstd.twin.frames import Array, IntArray
 from matstd.twin.units import DAY
 from matstd.twin.words import not_read
 

@@ -17,7 +17,7 @@ from matstd.probe_paths.language import LANGUAGES, Dialect, checked_name, head_m
 from matstd.probe_paths.plan import TouchPlan
 from matstd.twin.errors import DesignError
 from matstd.twin.files import write_whole
-from matstd.twin.record import IntArray
+from matstd.twin.frames import IntArray
 from matstd.twin.units import DEG, MINUTE
 
 DRY_RUN, SEARCH = "DRY", "LOC"

@@ -33,8 +33,7 @@ from matstd.probe_paths.plan import (
     waypoints,
 )
 from matstd.twin.errors import DesignError
-from matstd.twin.frames import Array, apply
-from matstd.twin.record import IntArray
+from matstd.twin.frames import Array, IntArray, apply
 from matstd.twin.units import DEG, MINUTE
 
 _LONGEST_TITLE = MAX_LINE - len("12345 * - ")

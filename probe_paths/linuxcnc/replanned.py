@@ -9,9 +9,8 @@ from matstd.probe_paths.campaign import foot_points
 from matstd.probe_paths.control import Move, ProbeStep, ReadProgram
 from matstd.probe_paths.plan import LINEAR, PlanOptions, TouchPlan, Visit
 from matstd.twin.errors import DesignError
-from matstd.twin.frames import Array, apply, inverse
+from matstd.twin.frames import Array, IntArray, apply, inverse
 from matstd.twin.machine import Chain, tip
-from matstd.twin.record import IntArray
 
 
 def shortened(

@@ -10,9 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from matstd.artefact.body import Meeting, contact
-from matstd.artefact.reach import Mask
 from matstd.probe_paths.plan.clearance import ToolClearance
-from matstd.twin.frames import Array, apply, inverse, turn
+from matstd.twin.frames import Array, Mask, apply, inverse, turn
 from matstd.twin.machine import linear_directions, table_to_tool, tip
 from matstd.twin.record import Labels
 from matstd.twin.units import DEG

@@ -7,8 +7,8 @@ import numpy as np
 from matstd.artefact.body import BLEND, FreeformPatch, Plate, Standard
 from matstd.artefact.reach import Workshop, table_face
 from matstd.probe_paths.plan.separation import CORNERS, Hulls
-from matstd.twin.frames import Array, apply, pose, turn
-from matstd.twin.record import IntArray, Labels
+from matstd.twin.frames import Array, IntArray, apply, pose, turn
+from matstd.twin.record import Labels
 
 _CELL = 4.0  # mm: side of a prism's lid; its corners are 0.2 mm off at a radius of 12 mm
 _FINE = 4  # intervals along a side of a cell at which the face is compared with its corners

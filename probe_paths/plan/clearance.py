@@ -9,16 +9,15 @@ from enum import StrEnum
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from matstd.artefact.body import Standard
 from matstd.artefact.reach import Workshop, still_frames
 from matstd.artefact.tool import Probe
 from matstd.probe_paths.plan.bodies import Bodies, standing_bodies
 from matstd.probe_paths.plan.separation import Hulls, Sweeps, balls_apart, gaps, least_gaps
-from matstd.twin.frames import Array, apply, turn
+from matstd.twin.frames import Array, IntArray, Mask, apply, turn
 from matstd.twin.machine import Chain, table_to_tool, tip
-from matstd.twin.record import IntArray, Labels, Setup
+from matstd.twin.record import Labels, Setup
 
 SMALLEST_GAP = 0.5
 """Least gap between the probe and any obstacle while it is positioned, mm."""
@@ -64,7 +63,7 @@ class ToolClearance:
         after: Array,
         with_ball: bool = True,
         with_tool: bool = True,
-        spared: NDArray[np.bool_] | None = None,
+        spared: Mask | None = None,
         enough: float = SMALLEST_GAP,
     ) -> tuple[Array, Labels]:
         """Smallest gap (M,), mm, of the tool along straight linear moves, and the nearest body.
@@ -103,7 +102,7 @@ def _gaps_to(
     rows: IntArray,
     place: tuple[Array, Array, Array],
     tool: Array,
-    spared: NDArray[np.bool_] | None,
+    spared: Mask | None,
     enough: Array,
 ) -> Array:
     """Gaps of M moves from some bodies, over all pieces of the tool, (M, rows), mm."""

@@ -10,9 +10,8 @@ from typing import NamedTuple
 import numpy as np
 
 from matstd.twin.errors import NotReachable
-from matstd.twin.frames import Array
+from matstd.twin.frames import Array, IntArray
 from matstd.twin.machine import Chain
-from matstd.twin.record import IntArray
 from matstd.twin.units import DEG
 
 GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)

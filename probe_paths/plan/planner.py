@@ -33,9 +33,9 @@ from matstd.probe_paths.plan.touch_plan import (
     ring_requests,
 )
 from matstd.twin.errors import DesignError, NotReachable, ShapeMismatch
-from matstd.twin.frames import Array
+from matstd.twin.frames import Array, IntArray
 from matstd.twin.machine import Chain
-from matstd.twin.record import IntArray, Labels, Setup
+from matstd.twin.record import Labels, Setup
 from matstd.twin.units import DEG
 
 _GAP_MARGIN = 0.011  # mm: gaps are found to 0.01, readings in programs are rounded to 0.0001

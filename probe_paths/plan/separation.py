@@ -12,10 +12,8 @@ from dataclasses import dataclass, fields
 from itertools import combinations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from matstd.twin.frames import Array
-from matstd.twin.record import IntArray
+from matstd.twin.frames import Array, IntArray, Mask
 
 CORNERS = 8  # most corners of a body
 EXACT = 0.01  # accuracy of a gap that matters, mm
@@ -173,9 +171,7 @@ def gaps(sweeps: Sweeps, hulls: Hulls, enough: Array | float) -> Array:
     return np.maximum(lower - swell, 0.0)
 
 
-def _nearest(
-    old: Array, has: NDArray[np.bool_], w: Array
-) -> tuple[Array, Array, NDArray[np.bool_]]:
+def _nearest(old: Array, has: Mask, w: Array) -> tuple[Array, Array, Mask]:
     """Point nearest to the origin of the hull of `w` (M, 3) and up to three old points (M, 3, 3).
 
     Returns:

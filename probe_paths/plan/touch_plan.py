@@ -14,9 +14,9 @@ from matstd.artefact.body import DatumSphere, Standard
 from matstd.artefact.reach import DatumBall, ProbeReach, Requests, Workshop
 from matstd.artefact.tool import OVERSHOOT, Probe, readings_at
 from matstd.probe_paths.plan.order import Visit
-from matstd.twin.frames import Array
+from matstd.twin.frames import Array, IntArray
 from matstd.twin.machine import Chain, table_to_tool
-from matstd.twin.record import IntArray, Labels, Setup
+from matstd.twin.record import Labels, Setup
 from matstd.twin.units import DEG
 
 GRID = 1e-4 * DEG  # rotary readings are rounded to what a program can state, rad

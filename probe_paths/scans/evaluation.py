@@ -22,11 +22,10 @@ import numpy as np
 
 from matstd.artefact.body import FreeformPatch, Standard
 from matstd.twin.errors import BadFile
-from matstd.twin.frames import Array, apply, inverse, pose, rotation
+from matstd.twin.frames import Array, IntArray, apply, inverse, pose, rotation
 from matstd.twin.machine import Chain, linear_motion, tip
 from matstd.twin.numbers import rms
 from matstd.twin.record import (
-    IntArray,
     Run,
     Setup,
     Touches,

@@ -15,8 +15,9 @@ from matstd.artefact.body import Standard
 from matstd.artefact.reach import Clamping, ProbeReach, Requests
 from matstd.probe_paths.plan import PlanOptions, Probe, Refusal, TouchPlan, plan_touches
 from matstd.twin.errors import NotReachable
+from matstd.twin.frames import IntArray
 from matstd.twin.machine import Chain
-from matstd.twin.record import IntArray, Setup
+from matstd.twin.record import Setup
 
 _POSES_TRIED = 6
 """Table poses at which a place of a further clamping is looked for, the best inclined first."""

@@ -5,12 +5,12 @@ from pathlib import Path
 
 import numpy as np
 
-from matstd.diagnosis.drift import DriftRecord, IntArray, Judged
+from matstd.diagnosis.drift import DriftRecord, Judged
 from matstd.report.drift.drift_words import law_title, law_words, together, units_word
 from matstd.report.layout import KeyFigure, Page, Picture, Section, Table, write_page
 from matstd.report.numbers import digits, percent, sentence, span
 from matstd.report.style import BLUE, FAINT, INK, NEUTRAL, WASH, Figure, figure, plain, series
-from matstd.twin.frames import Array
+from matstd.twin.frames import Array, IntArray
 from matstd.twin.sampling import spread_rows
 from matstd.twin.units import HOUR
 

@@ -4,9 +4,9 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from matstd.diagnosis.drift import DriftRecord, IntArray, Judged, ProbedPrediction
+from matstd.diagnosis.drift import DriftRecord, Judged, ProbedPrediction
 from matstd.report.numbers import digits, span
-from matstd.twin.frames import Array
+from matstd.twin.frames import Array, IntArray
 from matstd.twin.numbers import rms
 from matstd.twin.units import MINUTE
 

@@ -5,7 +5,6 @@ from typing import Any
 import numpy as np
 
 from matstd.diagnosis.laws import Learning
-from matstd.diagnosis.regression import BoolArray
 from matstd.report.laws.curves import LawCurve, axis_label, law_curve
 from matstd.report.style import (
     BLUE,
@@ -18,6 +17,7 @@ from matstd.report.style import (
     plain,
     robust_limit,
 )
+from matstd.twin.frames import Mask
 from matstd.twin.laws import Law
 from matstd.twin.units import UM
 
@@ -37,7 +37,7 @@ def draw_law(learning: Learning, law: Law) -> Figure:
     return drawn
 
 
-def _panel(ax: Any, curve: LawCurve, used: BoolArray) -> None:
+def _panel(ax: Any, curve: LawCurve, used: Mask) -> None:
     """A law over one of its variables."""
     seen = used & np.isfinite(curve.put_back)
     points = curve.put_back[seen]

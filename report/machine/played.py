@@ -9,9 +9,9 @@ from matstd.compensation.field import MachineErrors
 from matstd.compensation.part_programs import Program
 from matstd.compensation.programs import passed
 from matstd.probe_paths.control import Clock, Move, ProbeStep, ReadProgram, step_times
-from matstd.twin.frames import Array, unit
+from matstd.twin.frames import Array, IntArray, unit
 from matstd.twin.machine import Chain, linear_directions
-from matstd.twin.record import IntArray, last_signs
+from matstd.twin.record import last_signs
 from matstd.twin.units import DEG
 
 MAX_POSITIONS = 40_000

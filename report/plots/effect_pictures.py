@@ -8,7 +8,6 @@ import numpy as np
 from matstd.diagnosis.answer import Candidate, ConfusionClass, Diagnosis, Step
 from matstd.diagnosis.fit import MIN_POSES, Fit
 from matstd.diagnosis.policy import POLICY
-from matstd.diagnosis.regression import BoolArray
 from matstd.diagnosis.residual import Partial, Seen, binned, partial
 from matstd.report.effects import effect_cell, effect_title
 from matstd.report.numbers import microns, noun, shown
@@ -28,7 +27,7 @@ from matstd.report.style import (
     plain,
     series,
 )
-from matstd.twin.frames import Array
+from matstd.twin.frames import Array, Mask
 from matstd.twin.library import parse_effect
 from matstd.twin.model import Effect
 from matstd.twin.numbers import rms
@@ -310,7 +309,7 @@ def _roughness(found: Partial) -> float:
     return float(np.mean(np.diff(y) ** 2)) / max(float(np.var(y)), 1e-30)
 
 
-def _touches(ax: Any, found: Partial, y: Array, tested: BoolArray) -> None:
+def _touches(ax: Any, found: Partial, y: Array, tested: Mask) -> None:
     """Touches as points, held-out ones apart, and means with standard errors."""
     for rows, colour, word in (
         (found.shown[~tested[found.shown]], FAINT, "touches"),

@@ -5,9 +5,8 @@ from typing import Any
 import numpy as np
 
 from matstd.diagnosis.fit import Fit
-from matstd.diagnosis.regression import BoolArray
 from matstd.report.style import DIVERGING, INK, Figure, figure, plain, robust_limit
-from matstd.twin.frames import Array
+from matstd.twin.frames import Array, Mask
 from matstd.twin.model import Effect, columns
 from matstd.twin.units import UM
 
@@ -48,7 +47,7 @@ def draw_form(fit: Fit, effect: Effect) -> Figure:
     return drawn
 
 
-def _on_patch(fit: Fit, effect: Effect) -> BoolArray:
+def _on_patch(fit: Fit, effect: Effect) -> Mask:
     """Touches in use that the effect moves, (N,)."""
     moved = np.any(columns([effect], fit.run.touches) != 0.0, axis=1)
     return np.asarray(moved & fit.used)

@@ -32,8 +32,7 @@ from matstd.report.style import (
     plain,
     robust_limit,
 )
-from matstd.twin.frames import Array
-from matstd.twin.record import IntArray
+from matstd.twin.frames import Array, IntArray
 from matstd.twin.units import UM, URAD
 
 

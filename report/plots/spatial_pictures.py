@@ -5,7 +5,6 @@ from typing import Any
 import numpy as np
 
 from matstd.diagnosis.fit import Fit
-from matstd.diagnosis.regression import BoolArray
 from matstd.diagnosis.residual import pose_vectors
 from matstd.report.style import (
     BLUE,
@@ -21,8 +20,8 @@ from matstd.report.style import (
     plain,
     robust_limit,
 )
-from matstd.twin.frames import Array
-from matstd.twin.record import IntArray, Touches
+from matstd.twin.frames import Array, IntArray, Mask
+from matstd.twin.record import Touches
 from matstd.twin.units import DEG, UM
 
 EXTENT = 1.0  # touched points closer together than this (mm) are a place, not a standard
@@ -190,13 +189,13 @@ def _where(touches: Touches, rows: IntArray) -> tuple[Array, Array, str, str]:
     return x, y, x_name, y_name
 
 
-def _is_sure(spread: Array) -> BoolArray:
+def _is_sure(spread: Array) -> Mask:
     """Poses whose vectors are not much less certain than those of the others, (M,)."""
     largest = spread.max(axis=1)
     return np.asarray(largest <= UNSURE * np.median(largest))
 
 
-def _arrows(drawn: Any, ax: Any, fit: Fit, rows: IntArray, vectors: Array, sure: BoolArray) -> None:
+def _arrows(drawn: Any, ax: Any, fit: Fit, rows: IntArray, vectors: Array, sure: Mask) -> None:
     """Arrows in X and Y at the rotary readings, coloured by Z; their longest marks the scale."""
     x, y, x_name, y_name = _where(fit.run.touches, rows)
     # uncertain poses get a circle: their arrows would set the scale of all others

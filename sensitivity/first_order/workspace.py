@@ -4,10 +4,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from matstd.twin.errors import DesignError, NotReachable, OutsideTravel, UnknownAxis
-from matstd.twin.frames import Array
+from matstd.twin.frames import Array, Mask
 from matstd.twin.machine import Chain, inverse_linear, tip
 from matstd.twin.sampling import latin_points
 
@@ -59,12 +58,12 @@ class Workspace:
         """Programmed axes whose limits leave them room to move."""
         return tuple(a for a in self.chain.programmed_axes if np.ptp(self.limit(a)) > 0.0)
 
-    def in_volume(self, q: Array) -> NDArray[np.bool_]:
+    def in_volume(self, q: Array) -> Mask:
         """Whether the tool point at readings (N, A) is in the volume, (N,)."""
         if self.volume is None:
             return np.ones(len(q), dtype=bool)
         p, (low, high) = tip(self.chain, q, self.length), np.array(self.volume)
-        is_in: NDArray[np.bool_] = np.all((p >= low) & (p <= high), axis=1)
+        is_in: Mask = np.all((p >= low) & (p <= high), axis=1)
         return is_in
 
 

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from matstd.twin.compute import blocks, compiled_loop, one_blas_thread
-from matstd.twin.frames import Array
+from matstd.twin.frames import Array, IntArray
 
 BINS = 2048  # a quantile is then read to 0.05 % of the longest length
 _POSES_A_BLOCK = 256  # lengths of a block stay in a core's second cache
@@ -39,7 +39,7 @@ class Lengths:
     above: Array  # machines above the tolerance, (N,)
     histogram: NDArray[Any]  # shape (N, BINS); the last bin holds whatever is longer
     # machines for which the pose is among the worst ones, (N,); zero if not asked for
-    worst: NDArray[np.int64]
+    worst: IntArray
 
 
 def count_lengths(
@@ -118,7 +118,7 @@ def _count_all(
         assert done is None
 
 
-def _among_worst(size: Sizes, reference: int, allowed: int) -> NDArray[np.int64]:
+def _among_worst(size: Sizes, reference: int, allowed: int) -> IntArray:
     """Machines of size (N, m) for which each pose is among the worst `allowed`, (N,).
 
     The limit of every machine is the largest length that so many of the first `reference` poses

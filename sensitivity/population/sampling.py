@@ -5,13 +5,12 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from matstd.sensitivity.population.dependence import Dependence, amplitude, score_factor
 from matstd.sensitivity.population.distributions import CONSTANT, Distributions, Mix
 from matstd.twin.effects import ComponentError, LocationError
 from matstd.twin.errors import DesignError
-from matstd.twin.frames import Array
+from matstd.twin.frames import Array, IntArray
 from matstd.twin.machine import Chain, Family, Ranges, Symbol
 from matstd.twin.machine import shape as shape_function
 from matstd.twin.model import Effect, Model, traits
@@ -121,8 +120,8 @@ class Draws:
     """S drawn machines; every array is (S, P) over the symbols of the chain."""
 
     amplitude: Array  # peak amplitude with its sign, mm or rad
-    shape: NDArray[np.int64]  # index into the shapes that the error may have
-    periods: NDArray[np.int64]  # of a sinusoidal error
+    shape: IntArray  # index into the shapes that the error may have
+    periods: IntArray  # of a sinusoidal error
     phase: Array  # of a sinusoidal error, rad
 
     def __len__(self) -> int:

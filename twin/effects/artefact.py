@@ -4,12 +4,11 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from matstd.twin.effects.jump import between, thinned
 from matstd.twin.effects.setup_error import rigid_shift
 from matstd.twin.fields import SensorName, sensor_record, sensors
-from matstd.twin.frames import Array
+from matstd.twin.frames import Array, Mask
 from matstd.twin.model import Declared, Kind, Parameter, Term, Where, scanned
 from matstd.twin.record import Touches
 from matstd.twin.units import HOUR, UM, URAD
@@ -70,7 +69,7 @@ class ArtefactSlip(Declared):
         later = slipped.astype(float)
         return rigid_shift(later, arm * later[:, None])
 
-    def _slipped(self, touches: Touches) -> tuple[NDArray[np.bool_], Array]:
+    def _slipped(self, touches: Touches) -> tuple[Mask, Array]:
         """Which touches came after the slip and in its set-up, (N,); arms p - c, (N, 3), mm."""
         after = touches.time > self.instant
         if not np.any(after):

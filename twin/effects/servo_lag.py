@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from matstd.twin.fields import AxisName, moving_linear_axes
-from matstd.twin.frames import Array
+from matstd.twin.frames import Array, IntArray
 from matstd.twin.model import Amounts, Declared, Kind, Parameter
-from matstd.twin.record import IntArray, Labels, Touches
+from matstd.twin.record import Labels, Touches
 
 SPEED_COLUMN = "v{axis}_mm_s"
 """Column of the user's own (`V_vX_mm_s`) that states the speed of an axis, mm/s."""

@@ -7,10 +7,9 @@ from operator import attrgetter
 from typing import Annotated
 
 import numpy as np
-from numpy.typing import NDArray
 
 from matstd.twin.fields import Argument
-from matstd.twin.frames import Array
+from matstd.twin.frames import Array, Mask
 from matstd.twin.model import Declared, Parameter, Term, Where
 from matstd.twin.record import Body, Touches
 from matstd.twin.units import T_REF, UM
@@ -72,7 +71,7 @@ class SetupError(Declared):
         shifts = [Parameter(f"d{c}", "mm", SHIFT_SD) for c in "xyz" if not self.turns_only]
         return (*shifts, *(Parameter(f"r{c}", "rad", TURN_SD) for c in "xyz"))
 
-    def here(self, touches: Touches) -> NDArray[np.bool_]:
+    def here(self, touches: Touches) -> Mask:
         """Touches of this set-up, (N,)."""
         names = [s.name for s in touches.setups]
         return touches.setup == (names.index(self.setup) if self.setup in names else -1)
@@ -108,7 +107,7 @@ class StylusError(Declared):
         """`stylus(210.004,2.5)`."""
         return f"stylus({self.length:.9g},{self.radius:.9g})"
 
-    def here(self, touches: Touches) -> NDArray[np.bool_]:
+    def here(self, touches: Touches) -> Mask:
         """Touches of this stylus, (N,)."""
         return np.asarray((touches.length == self.length) & (touches.radius == self.radius))
 
@@ -141,7 +140,7 @@ class BodyTemperature(Declared):
     def parameters(self) -> Sequence[Parameter]:
         return (Parameter("temperature", "K", self.body.u_temperature),)
 
-    def here(self, touches: Touches) -> NDArray[np.bool_]:
+    def here(self, touches: Touches) -> Mask:
         """Touches of this run, (N,)."""
         own = np.array([s.run == self.run and s.body == self.body for s in touches.setups])
         return np.asarray(own[touches.setup])
@@ -170,7 +169,7 @@ class BodyExpansion(Declared):
     def parameters(self) -> Sequence[Parameter]:
         return (Parameter("expansion", "1/K", self.body.u_alpha),)
 
-    def here(self, touches: Touches) -> NDArray[np.bool_]:
+    def here(self, touches: Touches) -> Mask:
         """Touches of a standard of this expansion, (N,)."""
         return _of_body(touches, self.body, "alpha", "u_alpha")
 
@@ -202,7 +201,7 @@ class BodyScale(Declared):
         return _grown(touches, _of_body(touches, self.body, "alpha", "u_scale").astype(float))
 
 
-def _of_body(touches: Touches, body: Body, *names: str) -> NDArray[np.bool_]:
+def _of_body(touches: Touches, body: Body, *names: str) -> Mask:
     """Touches of a standard whose stated figures of these names are those of a body, (N,)."""
     of = attrgetter(*names)
     own = [s.body is not None and of(s.body) == of(body) for s in touches.setups]

@@ -9,9 +9,8 @@ import numpy as np
 from matstd.twin.errors import BadFile
 from matstd.twin.files.table import CsvTable
 from matstd.twin.files.toml import read_text
-from matstd.twin.frames import Array
+from matstd.twin.frames import Array, IntArray
 from matstd.twin.machine import Chain
-from matstd.twin.record import IntArray
 from matstd.twin.units import USUAL_TOOL_LENGTH, in_another_unit
 
 FARTHEST = 1e5

@@ -3,17 +3,14 @@
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from matstd.twin.errors import BadFile
 from matstd.twin.files.pose_file import beyond_travel
 from matstd.twin.files.table import CsvTable
-from matstd.twin.frames import Array
+from matstd.twin.frames import Array, IntArray, Mask
 from matstd.twin.numbers import rms
-from matstd.twin.record import Instrument, IntArray, Run, computed_deviation, without_copies
+from matstd.twin.record import Instrument, Run, computed_deviation, without_copies
 from matstd.twin.units import UM
-
-Mask = NDArray[np.bool_]
 
 LARGEST_DEVIATION = 10.0
 """Deviations beyond this (mm) are refused: units are mixed up, or set-up or probe are wrong."""

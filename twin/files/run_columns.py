@@ -5,17 +5,14 @@ from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from matstd.twin.errors import BadFile
 from matstd.twin.files.pose_file import FARTHEST
 from matstd.twin.files.table import KELVIN, CsvTable
-from matstd.twin.frames import Array
+from matstd.twin.frames import Array, IntArray, Mask
 from matstd.twin.machine import Chain
-from matstd.twin.record import BODY, IntArray, Labels, Moved, Touches, implied_approach
+from matstd.twin.record import BODY, Labels, Moved, Touches, implied_approach
 from matstd.twin.units import DEG, UM
-
-BoolArray = NDArray[np.bool_]
 
 SENSOR = re.compile(r"T_(\w+)_degC\Z")
 OWN = re.compile(r"V_(\w+_\w+)\Z")  # a column of the user's own: name and unit
@@ -173,7 +170,7 @@ def check_units(table: CsvTable) -> None:
 
 
 def _mended(
-    table: CsvTable, column: str, values: Array, gaps: BoolArray, at: Array, remarks: list[str]
+    table: CsvTable, column: str, values: Array, gaps: Mask, at: Array, remarks: list[str]
 ) -> Array | None:
     """A record with its gaps interpolated in time and reported; None where more than half is
     missing.
@@ -189,7 +186,7 @@ def _mended(
     return _filled(values, gaps, at)
 
 
-def _filled(values: Array, gaps: BoolArray, at: Array) -> Array:
+def _filled(values: Array, gaps: Mask, at: Array) -> Array:
     """A record with values between their neighbours in the gaps; rows count where no time does."""
     along = at if np.ptp(at) > 0.0 and np.all(np.diff(at) >= 0.0) else np.arange(len(at))
     out = values.copy()
@@ -197,7 +194,7 @@ def _filled(values: Array, gaps: BoolArray, at: Array) -> Array:
     return out
 
 
-def _record_fault(table: CsvTable, column: str, values: Array, gaps: BoolArray) -> str:
+def _record_fault(table: CsvTable, column: str, values: Array, gaps: Mask) -> str:
     """Description of the fault of a record at its gaps."""
     first = int(np.argmax(gaps))
     rows = f"{gaps.sum()} row{'s' if gaps.sum() > 1 else ''}"

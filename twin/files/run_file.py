@@ -15,12 +15,11 @@ from matstd.twin.files.pose_file import FARTHEST, reading_columns, readings
 from matstd.twin.files.run_checks import checked_run, states_readings
 from matstd.twin.files.table import CsvTable
 from matstd.twin.files.toml import parse_kind, read_text
-from matstd.twin.frames import fixed_xyz, pose
+from matstd.twin.frames import IntArray, fixed_xyz, pose
 from matstd.twin.machine import Chain
 from matstd.twin.record import (
     BODY,
     Instrument,
-    IntArray,
     Moved,
     Run,
     Setup,

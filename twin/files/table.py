@@ -8,11 +8,10 @@ from functools import cached_property
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic_core import from_json
 
 from matstd.twin.errors import BadFile
-from matstd.twin.frames import Array
+from matstd.twin.frames import Array, IntArray, Mask
 from matstd.twin.words import did_you_mean
 
 LARGEST_CELL = 1e12  # largest number of any column; larger ones are refused
@@ -109,7 +108,7 @@ class CsvTable:
         """Line number of every row."""
         return [line for line, _ in self.rows]
 
-    def reorder(self, order: NDArray[np.int64]) -> None:
+    def reorder(self, order: IntArray) -> None:
         """Take the rows in another order; their line numbers go with them."""
         self.rows = [self.rows[i] for i in order]
         self.lines = [line for line, _ in self.rows]
@@ -194,7 +193,7 @@ class CsvTable:
                 raise self.bad(i, name, cell, f"{smallest:g} or more")
         return out
 
-    def temperatures(self, name: str) -> tuple[Array, NDArray[np.bool_]]:
+    def temperatures(self, name: str) -> tuple[Array, Mask]:
         """A column of temperatures, (N,), degC, and where no sensor of a machine gives it, (N,)."""
         values = self.numbers(name, empty=math.nan, finite=False, largest=math.inf)
         known = values[np.isfinite(values)]

@@ -13,7 +13,6 @@ from matstd.twin.record.run import Run
 from matstd.twin.record.several_runs import joined, stacked
 from matstd.twin.record.touches import (
     Body,
-    IntArray,
     Labels,
     Setup,
     Touches,
@@ -25,7 +24,7 @@ from matstd.twin.record.touches import (
 )
 
 __all__ = [
-    "BODY", "U_SHARE", "Body", "Instrument", "IntArray", "Labels", "Moved", "Run", "Setup",
+    "BODY", "U_SHARE", "Body", "Instrument", "Labels", "Moved", "Run", "Setup",
     "StatedBody", "Touches", "aligned", "at_poses", "computed_deviation", "implied_approach",
     "joined", "last_signs", "linear_approach", "rigid_motion", "stacked", "turn_of", "with_body",
     "with_commanded", "without_copies",

@@ -5,10 +5,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from matstd.twin.frames import Mask
 from matstd.twin.record.run import Run
 from matstd.twin.units import NM
-
-BoolArray = NDArray[np.bool_]
 
 MIN_COPIES = 8  # fewer rows that agree with an earlier one to the last digit may be chance
 MIN_COPIED_SHARE = 0.6
@@ -54,7 +53,7 @@ def without_copies(run: Run) -> Run:
     return replace(out, remarks=tuple(remarks)) if out is not run else run
 
 
-def _copies(run: Run, with_time: bool) -> BoolArray:
+def _copies(run: Run, with_time: bool) -> Mask:
     """Rows that agree with an earlier one in everything measured, (N,)."""
     t = run.touches
     recorded = [*t.temperature.values(), *t.value.values()]
@@ -88,7 +87,7 @@ def _by_chance(run: Run) -> float:
     return float(np.sum(m - n * (1.0 - (1.0 - 1.0 / n) ** m)))
 
 
-def _later(key: NDArray[np.float64]) -> BoolArray:
+def _later(key: NDArray[np.float64]) -> Mask:
     """Rows of a table that equal an earlier row, (N,)."""
     first = np.unique(key, axis=0, return_index=True)[1]
     later = np.ones(len(key), dtype=bool)
@@ -96,7 +95,7 @@ def _later(key: NDArray[np.float64]) -> BoolArray:
     return later
 
 
-def _words(run: Run, copies: BoolArray, what: str) -> str:
+def _words(run: Run, copies: Mask, what: str) -> str:
     count = int(copies.sum())
     rows = "row" if count == 1 else "rows"
     line = int(run.line[np.argmax(copies)])

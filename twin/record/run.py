@@ -6,11 +6,10 @@ from datetime import datetime
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from matstd.twin.display import Displayed
-from matstd.twin.frames import Array
-from matstd.twin.record.touches import IntArray, Labels, Touches, check_rows, no_labels, no_numbers
+from matstd.twin.frames import Array, IntArray, Mask
+from matstd.twin.record.touches import Labels, Touches, check_rows, no_labels, no_numbers
 
 PER_ROW = ("deviation", "u", "split", "repeat", "line", "program", "touch", "program_line")
 """Fields of `Run` with a value for each touch."""
@@ -75,7 +74,7 @@ class Run(Displayed):
         each = [self[of == i].fingerprint for i in np.unique(of)]
         return (*each, self.fingerprint) if len(each) > 1 else (self.fingerprint,)
 
-    def __getitem__(self, rows: NDArray[np.bool_] | IntArray | slice) -> "Run":
+    def __getitem__(self, rows: Mask | IntArray | slice) -> "Run":
         """The measurements of some rows, as a new record."""
         own = {name: getattr(self, name) for name in PER_ROW}
         picked: dict[str, Any] = {name: None if v is None else v[rows] for name, v in own.items()}

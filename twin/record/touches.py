@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from matstd.twin.errors import ShapeMismatch
-from matstd.twin.frames import Array, apply, inverse, turn
+from matstd.twin.frames import Array, IntArray, Mask, apply, inverse, turn
 from matstd.twin.machine import (
     Chain,
     Reach,
@@ -23,7 +23,6 @@ from matstd.twin.machine import (
 from matstd.twin.record.instrument import Instrument
 from matstd.twin.units import T_REF
 
-IntArray = NDArray[np.int64]
 Labels = NDArray[np.str_]
 
 
@@ -153,7 +152,7 @@ class Touches:
     def __len__(self) -> int:
         return len(self.q)
 
-    def __getitem__(self, rows: NDArray[np.bool_] | IntArray | slice) -> "Touches":
+    def __getitem__(self, rows: Mask | IntArray | slice) -> "Touches":
         """The touches of some rows, as a new record."""
         picked = {
             name: getattr(self, name)[rows] for name in PER_TOUCH if getattr(self, name) is not None
