@@ -23,7 +23,7 @@ from matstd.artefact.worth import (
     touches_to_choose_from,
 )
 from matstd.twin.errors import NotBuildable, NotReachable
-from matstd.twin.frames import Array, Mask
+from matstd.twin.frames import Array
 
 _MOST_COST = 1.02  # of a mean variance: 1 % of an error
 CANDIDATES_PER_TOUCH = 4  # touches on the balls that prove from which each is chosen

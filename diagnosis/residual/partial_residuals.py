@@ -17,11 +17,10 @@ from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.residual.patterns import variables
 from matstd.twin.effects import normal_in_tool
 from matstd.twin.frames import Array, IntArray
+from matstd.twin.machine import LETTERS
 from matstd.twin.model import Effect, Where, columns, inner_values, traits
 from matstd.twin.record import Touches
 from matstd.twin.units import DEG
-
-LETTERS = "XYZABC"
 
 MAX_ROUGHNESS = 0.12
 """Share of an effect's variance in its steps between neighbours over a variable, from which it is
