@@ -16,13 +16,11 @@ import numpy as np
 from matstd.importers.sheets.blanks import by_blanks
 from matstd.importers.sheets.channel_log import by_channels
 from matstd.importers.sheets.height_map import by_heights
-from matstd.importers.sheets.several_tables import axis_in, separate_tables
+from matstd.importers.sheets.several_tables import Row, axis_in, separate_tables
 from matstd.importers.sheets.sheet import Sheet
 from matstd.importers.sheets.units import is_unit
 from matstd.twin.errors import BadFile, DesignError
 from matstd.twin.files import read_any_text
-
-Row = tuple[int, Sequence[str | float]]  # cells of a line, with its number
 
 WORKBOOKS = (".xlsx", ".xlsm", ".xlsb", ".xls", ".ods")
 """Endings of files that are read as workbooks."""
