@@ -282,7 +282,7 @@ def form_columns(body: Standard, touches: Requests, u: float) -> Array:
 
 def _linear(reach: ProbeReach, readings: Array) -> Array:
     """Readings of the linear axes alone, (N, 3)."""
-    return readings[:, [reach.chain.axis_index(name) for name in reach.chain.linear_axes]]
+    return readings[:, reach.chain.linear_columns]
 
 
 def _squares(points: Array, place: Array) -> Array:

@@ -96,14 +96,13 @@ class ProbeReach:
 
     def _readings(self, wanted: Requests, gap: float, poses: "_PoseKinematics") -> Array:
         chain = self.chain
-        rotary = [chain.axis_index(name) for name in chain.rotary_axes]
         q = np.zeros((len(wanted), len(chain.axes)))
-        q[:, rotary] = wanted.rotary
+        q[:, chain.rotary_columns] = wanted.rotary
         ball = wanted.point + (self.radius + gap) * wanted.normal
         target = apply(self.setup.T_table_artefact, ball)
         i = poses.index
         way = (target - poses.tip[i])[..., None]
-        linear = [chain.axis_index(name) for name in chain.linear_axes]
+        linear = chain.linear_columns
         q[:, linear] = poses.q[i][:, linear] + (poses.inverse[i] @ way)[..., 0]
         return q
 
@@ -112,7 +111,7 @@ class ProbeReach:
         chain = self.chain
         poses, index = distinct_rows(wanted.rotary)
         q = np.zeros((len(poses), len(chain.axes)))
-        q[:, [chain.axis_index(name) for name in chain.rotary_axes]] = poses
+        q[:, chain.rotary_columns] = poses
         target = np.tile(self.setup.T_table_artefact[:3, 3], (len(poses), 1))
         q = inverse_linear(chain, target, q, self.length)
         T_table_tool, along = tool_and_directions(chain, q)
@@ -139,7 +138,7 @@ class ProbeReach:
         nowhere = np.zeros((k, 3))
         at = self._pose_kinematics(Requests(np.full(k, ""), nowhere, nowhere, poses))
         i, place = at.index, self.setup.T_table_artefact
-        linear = [self.chain.axis_index(name) for name in self.chain.linear_axes]
+        linear = self.chain.linear_columns
         target = apply(place, point + (self.radius + gap) * normal)
         way = target[:, None] - at.tip[i]
         q = at.q[i][:, linear] + np.einsum("kij,nkj->nki", at.inverse[i], way)

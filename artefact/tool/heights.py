@@ -72,7 +72,7 @@ def _ring(radius: float, height: float, sides: int = 32) -> Array:
 def readings_at(chain: Chain, rotary: Array) -> Array:
     """Readings (N, A) with given rotary readings (N, R), rad, and every other axis at zero."""
     q = np.zeros((len(rotary), len(chain.axes)))
-    q[:, [chain.axis_index(name) for name in chain.rotary_axes]] = rotary
+    q[:, chain.rotary_columns] = rotary
     return q
 
 

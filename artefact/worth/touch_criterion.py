@@ -30,7 +30,7 @@ from matstd.sensitivity.first_order import Box, Workspace, latin_hypercube
 from matstd.sensitivity.population import Population, drawn_scales
 from matstd.twin.compute import blocks
 from matstd.twin.errors import DesignError, NotReachable
-from matstd.twin.frames import Array, IntArray, apply
+from matstd.twin.frames import Array, IntArray, apply, unit
 from matstd.twin.machine import Family
 from matstd.twin.model import Model, traits
 from matstd.twin.record import Touches, at_poses
@@ -325,7 +325,7 @@ def random_touches(
     wanted = Requests(
         feature=np.full(tries, "scatter"),
         point=rng.uniform(low, high, (tries, 3)),
-        normal=normal / np.linalg.norm(normal, axis=1, keepdims=True),
+        normal=unit(normal),
         rotary=rng.uniform(rotary[:, 0], rotary[:, 1], (tries, len(rotary))),
     )
     reached = np.flatnonzero(reach.is_reachable(wanted))[:count]

@@ -12,7 +12,7 @@ from matstd.compensation.programs.path import ProgramPath, are_first, shares_of_
 from matstd.compensation.programs.times import Timed, in_time
 from matstd.compensation.tables import Header, point_spacing
 from matstd.twin.errors import OutsideTravel
-from matstd.twin.frames import Array, IntArray, Mask
+from matstd.twin.frames import Array, IntArray, Mask, unit
 from matstd.twin.machine import tip
 from matstd.twin.record import Touches
 from matstd.twin.sampling import spread_rows
@@ -119,8 +119,7 @@ class Compensated:
     def leans(self) -> Array:
         """How far the top of every hole lies off the axis through its bottom, (H,), mm."""
         tops = np.flatnonzero(self._ahead[self.motion] == 1)
-        along = self.nominal[tops] - self.nominal[tops + 1]
-        along /= np.linalg.norm(along, axis=1, keepdims=True)
+        along = unit(self.nominal[tops] - self.nominal[tops + 1])
         off = self.after[tops] - self.after[tops + 1]
         return np.linalg.norm(off - np.sum(off * along, axis=1, keepdims=True) * along, axis=1)
 

@@ -99,7 +99,7 @@ class PointCorrection:
         self._tables = error_tables(errors, length, close)
         self.interpolation = float(sum(t.left for t in self._tables))
         self._places = _places(errors, length)
-        self._columns = tuple(chain.axis_index(name) for name in chain.linear_axes)
+        self._columns = tuple(chain.linear_columns)
         self._links = [chain.link(name) for name in chain.axes]
         self._tip = (0.0, 0.0, -float(length))
         self._aim = (0.0, 0.0, 0.0) if datum is None else _point(datum.deviation(errors))

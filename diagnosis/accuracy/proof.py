@@ -71,7 +71,7 @@ def probed_volume(run: Run, count: int, rng: np.random.Generator) -> Touches:
     """
     t = run.touches
     chain, setup = t.chain, t.setups[0]
-    rotary = [chain.axis_index(a) for a in chain.rotary_axes]
+    rotary = chain.rotary_columns
     low, high = t.ball_artefact.min(axis=0), t.ball_artefact.max(axis=0)
     limits = np.array([link.range for link in chain.links if link.kind != "fixed"])
     found: list[Array] = []

@@ -21,7 +21,7 @@ from matstd.probe_paths.campaign.evaluation import ball_centres
 from matstd.probe_paths.control import LogPart
 from matstd.probe_paths.language import Dialect
 from matstd.twin.errors import BadFile, DesignError
-from matstd.twin.frames import Array, apply, inverse
+from matstd.twin.frames import Array, apply, inverse, unit
 from matstd.twin.machine import Chain
 from matstd.twin.units import HOUR, UM
 
@@ -110,7 +110,7 @@ def _change(
     around = one.heading.setup.T_table_artefact
     middle = fitted_sphere(before, apply(around, balls[name].centre[None])[0]).centre
     way = before - middle
-    normal = way / np.linalg.norm(way, axis=1, keepdims=True)
+    normal = unit(way)
     grown = np.linalg.norm(after[again] - middle, axis=1) - np.linalg.norm(way, axis=1)
     A = np.column_stack([normal, np.ones(len(rows))])
     solved, _, rank, _ = np.linalg.lstsq(A, grown, rcond=1e-3)

@@ -11,7 +11,7 @@ import numpy as np
 
 from matstd.artefact.body import Meeting, contact
 from matstd.probe_paths.plan.clearance import ToolClearance
-from matstd.twin.frames import Array, Mask, apply, inverse, turn
+from matstd.twin.frames import Array, Mask, apply, inverse, turn, unit
 from matstd.twin.machine import linear_directions, table_to_tool, tip
 from matstd.twin.record import Labels
 from matstd.twin.units import DEG
@@ -49,8 +49,7 @@ class Approaches:
         towards = tool - np.einsum("ni,ni->n", tool, normal)[:, None] * normal
         size = np.linalg.norm(towards, axis=1, keepdims=True)
         any_side = np.cross(normal, np.eye(3)[np.argmin(np.abs(normal), axis=1)])
-        towards = np.where(size > 1e-6, towards, any_side)
-        towards /= np.linalg.norm(towards, axis=1, keepdims=True)
+        towards = unit(np.where(size > 1e-6, towards, any_side))
         across = np.cross(normal, towards)
         for lean in _LEANS:
             for side in _SIDES:

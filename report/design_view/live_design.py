@@ -141,7 +141,7 @@ def _touches(plan: TouchPlan) -> TREE:
     """Touches in their order, with the pose of the tool seen from the standard."""
     T = inverse(plan.setup.T_table_artefact) @ table_to_tool(plan.chain, plan.contact)
     names = list(dict.fromkeys(plan.feature.tolist()))
-    rotary = [plan.chain.axis_index(a) for a in plan.chain.rotary_axes]
+    rotary = plan.chain.rotary_columns
     return {
         "point": packed(plan.point, "f4", unit="mm"),
         "normal": packed(plan.normal, "f4"),

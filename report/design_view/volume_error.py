@@ -52,7 +52,7 @@ def error_field(
     after: list[Array] = []
     for share in _SHARES if chain.rotary_axes else _SHARES[:1]:
         q = np.zeros((len(grid), len(chain.axes)))
-        q[:, [chain.axis_index(a) for a in axes]] = grid
+        q[:, chain.linear_columns] = grid
         stands = {}
         for name in chain.rotary_axes:
             low, high = workspace.limit(name)

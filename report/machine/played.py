@@ -102,7 +102,7 @@ def played_probing(
     """
     rows: list[tuple[float, Array, int, int, int]] = []
     lengths: list[float] = []
-    begin, rotary = 0.0, [chain.axis_index(a) for a in chain.rotary_axes]
+    begin, rotary = 0.0, chain.rotary_columns
     first = _first_readings(programs)
     for k, program in enumerate(programs):
         to_surface = [t.back if standoff is None else standoff for t in program.touches]
@@ -185,7 +185,7 @@ def _against_motion(
 ) -> Array:
     """Direction against which each touch is made, table frame, (K, 3): the normal it looks for."""
     out = np.zeros((len(q), 3))
-    linear = [chain.axis_index(a) for a in chain.linear_axes]
+    linear = chain.linear_columns
     for k, program in enumerate(programs):
         ways = {t.number: t.direction[linear] for t in program.touches if not t.is_air}
         rows = np.flatnonzero((which == k) & (touch > 0))
