@@ -83,7 +83,8 @@ def learn_beside(
     for _ in range(policy.most_laws if is_enough else 0):
         learnt = [one.law for one in laws]
         tried = _tried(start, learnt, current, ground, policy, is_searched)
-        if not tried.is_kept and (rows := _alike(current.gross)).sum() >= MIN_EXPLAINED:
+        rows = _alike(current.gross)
+        if (rows & ~(tried.fit if tried.is_kept else current).used).sum() >= MIN_EXPLAINED:
             fewer = replace(current.gross, rows=current.gross.rows & ~rows)
             whole = white.fitted(learnt, gross=fewer)
             other = _tried(start, learnt, whole, ground, policy, is_searched)
@@ -138,7 +139,7 @@ def _tried(
 ) -> _Tried:
     """The next law beside others, in white noise."""
     searched = search_law(Space.of(current), ground, policy)
-    best = _learnt(searched)
+    best = _learnt(searched, laws)
     if best is None:
         return _Tried(None, current, current, None)
     fit = replace(start, memory=None).fitted([*laws, best.law])
@@ -201,8 +202,9 @@ def _each_anew(
         i = min(waiting)
         waiting.remove(i)
         others = set(range(len(laws))) - {i}
-        base = white.fitted([laws[k].law for k in sorted(others)])
-        best = _learnt(search_law(Space.of(base), ground, policy))
+        beside = [laws[k].law for k in sorted(others)]
+        base = white.fitted(beside)
+        best = _learnt(search_law(Space.of(base), ground, policy), beside)
         if best is None or best.score < policy.min_score:
             continue
         is_same = best.law.name == laws[i].law.name
@@ -249,17 +251,20 @@ def _by_rival(best: LearntLaw, is_searched: bool, policy: LawPolicy) -> Refusal 
     return Refusal.LIBRARY if library > best.score + policy.class_odds else None
 
 
-def _learnt(searched: Searched) -> LearntLaw | None:
-    """The choice of a search with its rivals; None where there is no candidate."""
-    if not searched.candidates:
+def _learnt(searched: Searched, beside: Sequence[Law]) -> LearntLaw | None:
+    """The choice of a search with its rivals; None where there is no candidate.
+
+    Args:
+        beside: Other laws, whose names are taken: a fit knows its effects by their names.
+    """
+    taken = {law.name for law in beside}
+    every = [(_usual(c.law, c.bearer.alike), c) for c in searched.candidates]
+    every = [(law, c) for law, c in every if law.name not in taken]
+    if not every:
         return None
-    first = searched.candidates[0]
-    law = replace(first.law, carrier=_usual(first.law, first.bearer.alike))
+    law, first = every[0]
     alike = [c for c in (first.bearer.carrier, *first.bearer.alike) if c.name != law.carrier.name]
-    rivals = [
-        Rival(replace(c.law, carrier=_usual(c.law, c.bearer.alike)), first.score - c.score)
-        for c in searched.candidates[1:]
-    ]
+    rivals = [Rival(other, first.score - c.score) for other, c in every[1:]]
     return LearntLaw(
         law=law,
         alike=tuple(alike),
@@ -270,12 +275,11 @@ def _learnt(searched: Searched) -> LearntLaw | None:
     )
 
 
-def _usual(law: Law, alike: Sequence[Carrier]) -> Carrier:
-    """Of carriers that do the same that of the axis which the law is a function of."""
-    axes = [f.driver.name for f in law.factors]
-    for axis in axes:
+def _usual(law: Law, alike: Sequence[Carrier]) -> Law:
+    """The law, of carriers that do the same at that of the axis which it is a function of."""
+    for factor in law.factors:
         for carrier in (law.carrier, *alike):
             symbol = carrier.symbol
-            if symbol is not None and symbol.link == axis and not symbol.is_angular:
-                return carrier
-    return law.carrier
+            if symbol is not None and symbol.link == factor.driver.name and not symbol.is_angular:
+                return replace(law, carrier=carrier)
+    return law
