@@ -33,8 +33,9 @@ MIN_TOUCHES_OF_LAW = 30
 """Fewer touches than this leave no law that could be distinguished from another."""
 
 MIN_EXPLAINED = 4
-"""So many gross errors, and half of them, must follow a law that is learnt from them: a step beyond
-which 8 of 780 touches are stands out like 8 chips. Accidents have no law in common."""
+"""So many gross errors for every shape, and half of them, must follow a law that is learnt from
+them: a step beyond which 8 of 780 touches are stands out like 8 chips. Accidents have no law in
+common; five that a product of two explained predicted another run with 3.1 um instead of 2.4."""
 
 FAR_GROSS = 2.0  # gross errors so many times as large as the middle one are not counted among those
 
@@ -89,8 +90,8 @@ def learn_beside(
             whole = white.fitted(learnt, gross=fewer)
             other = _tried(start, learnt, whole, ground, policy, is_searched)
             explained = int((rows & other.fit.used).sum())
-            if other.is_kept and explained >= max(MIN_EXPLAINED, 0.5 * rows.sum()):
-                tried = other
+            least = max(MIN_EXPLAINED * other.shapes, 0.5 * rows.sum())
+            tried = other if other.is_kept and explained >= least else tried
         if tried.best is None or not tried.is_kept:
             break
         laws.append(tried.best)
@@ -127,6 +128,10 @@ class _Tried(NamedTuple):
     @property
     def is_kept(self) -> bool:
         return self.best is not None and self.refusal is None
+
+    @property
+    def shapes(self) -> int:
+        return len(self.best.law.factors) if self.best else 0
 
 
 def _tried(
