@@ -90,8 +90,9 @@ def learn_beside(
             whole = white.fitted(learnt, gross=fewer)
             other = _tried(start, learnt, whole, ground, policy, is_searched)
             explained = int((rows & other.fit.used).sum())
-            least = max(MIN_EXPLAINED * other.shapes, 0.5 * rows.sum())
-            tried = other if other.is_kept and explained >= least else tried
+            shapes = len(other.best.law.factors) if other.best else 0
+            if other.is_kept and explained >= max(MIN_EXPLAINED * shapes, 0.5 * rows.sum()):
+                tried = other
         if tried.best is None or not tried.is_kept:
             break
         laws.append(tried.best)
@@ -128,10 +129,6 @@ class _Tried(NamedTuple):
     @property
     def is_kept(self) -> bool:
         return self.best is not None and self.refusal is None
-
-    @property
-    def shapes(self) -> int:
-        return len(self.best.law.factors) if self.best else 0
 
 
 def _tried(

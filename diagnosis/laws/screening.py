@@ -216,7 +216,7 @@ def _best_of_carriers(
             bearer=owner[i],
             driver=driver,
             word=word,
-            places=tuple(places[j].tolist()),
+            places=tuple(places[j]),
             explained=power[i, j],
         )
         for i, j in enumerate(np.argmax(power, axis=1))

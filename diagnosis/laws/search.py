@@ -144,9 +144,7 @@ def _at_best_places(space: Space, field: Field, found: Sequence[Candidate]) -> l
     The sum of squares of a saw-tooth or a window has many minima, and carriers are compared at the
     same one.
     """
-    best: dict[tuple[Factor, ...], Candidate] = {}
-    for one in sorted(found, key=lambda c: -c.score):
-        best.setdefault(one.law.factors, one)
+    best = {one.law.factors: one for one in sorted(found, key=lambda c: c.score)}
     out = []
     for one in found:
         places = best[one.law.factors].law.places
@@ -210,12 +208,7 @@ def _rough(space: Space, grids: Grids) -> list[Candidate]:
 
 def _distinct(found: Sequence[Candidate]) -> list[Candidate]:
     """Every law once, at its best place."""
-    best: dict[str, Candidate] = {}
-    for one in found:
-        name = one.law.name
-        if name not in best or one.score > best[name].score:
-            best[name] = one
-    return list(best.values())
+    return list({c.law.name: c for c in sorted(found, key=lambda c: c.score)}.values())
 
 
 def _charged(one: Candidate, field: Field, policy: LawPolicy) -> Candidate:
