@@ -25,7 +25,7 @@ DRAWN = 1000
 """Touches at other places, at least: their mean variance is known within a few per cent."""
 
 MIN_BLOCKS = 3
-"""Set-ups from which standards are placed as set-ups stood; with fewer, poses are moved."""
+"""Set-ups from which standards are placed as set-ups stood; with fewer, the standard stays."""
 
 ON_STANDARD = (Instrument.TOUCH_PROBE, Instrument.CMM, Instrument.BALL_BAR)
 """Instruments whose points are of a body that is placed as a whole."""
@@ -89,8 +89,8 @@ def other_places(touches: Touches, rng: np.random.Generator) -> Touches:
 
     A rotary axis turns from pose to pose to where it stood in another pose. A standard is placed
     where another set-up was, one coordinate like this, the next like that, and the linear axes
-    follow; without one, the linear axes move as the rotary ones do. With fewer set-ups a pose
-    touches another place of the same body: what its alignment leaves open turns all of it.
+    follow; without one, the linear axes move as the rotary ones do. A standard of few set-ups stays
+    where it stood: moved by poses it would turn with what its alignment leaves open.
     """
     chain = touches.chain
     q = (touches.q if touches.commanded is None else touches.commanded).copy()
@@ -99,37 +99,21 @@ def other_places(touches: Touches, rng: np.random.Generator) -> Touches:
     moved = chain.rotary_axes if is_standing else chain.axes
     for k in map(chain.axis_index, moved):
         q[:, k] = _elsewhere(q[:, k], poses, rng)
-    setups = _labels(touches, np.zeros_like(touches.pose))
-    is_placed = is_standing and setups.max() + 1 >= MIN_BLOCKS
-    if is_standing:
-        at, label = touches.point_table, setups if is_placed else poses
-        moved_at = (_elsewhere(at[:, k], label, rng, not is_placed) for k in range(LINEAR))
-        point = np.column_stack([*moved_at])
-        target = point + touches.radius[:, None] * touches.normal_table
-        q = inverse_linear(chain, target, q, touches.target)
-    there = replace(touches, q=q, commanded=None)
-    if is_placed:
-        return there
-    return replace(there, point=there.ball_artefact - touches.radius[:, None] * touches.normal)
+    if not is_standing:
+        there = replace(touches, q=q, commanded=None)
+        return replace(there, point=there.ball_artefact - touches.radius[:, None] * touches.normal)
+    setups, point = _labels(touches, np.zeros_like(touches.pose)), touches.point_table
+    if setups.max() + 1 >= MIN_BLOCKS:
+        point = np.column_stack([_elsewhere(point[:, k], setups, rng) for k in range(LINEAR)])
+    target = point + touches.radius[:, None] * touches.normal_table
+    return replace(touches, q=inverse_linear(chain, target, q, touches.target), commanded=None)
 
 
-def _elsewhere(
-    values: Array, label: IntArray, rng: np.random.Generator, is_inside: bool = False
-) -> Array:
-    """Values of labelled rows, each label moved to where another one lay, (N,).
-
-    Args:
-        is_inside: Whether it stays within the range of all values.
-    """
+def _elsewhere(values: Array, label: IntArray, rng: np.random.Generator) -> Array:
+    """Values of labelled rows, each label moved to where another one lay, (N,)."""
     count = np.bincount(label)
     middle = np.bincount(label, values) / count
-    step = middle[rng.integers(len(count), size=len(count))] - middle
-    if is_inside:
-        low, high = np.full((2, len(count)), [[np.inf], [-np.inf]])
-        np.minimum.at(low, label, values)
-        np.maximum.at(high, label, values)
-        step = np.clip(step, values.min() - low, values.max() - high)
-    return values + step[label]
+    return values + (middle[rng.integers(len(count), size=len(count))] - middle)[label]
 
 
 def _labels(touches: Touches, pose: IntArray) -> IntArray:

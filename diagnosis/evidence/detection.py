@@ -6,8 +6,6 @@ decides the chance. One that does less must stay behind in evidence. Both are wo
 expected evidence of every variant beside a signature of a given length.
 """
 
-from collections.abc import Iterator
-
 import numpy as np
 from scipy.special import fdtri
 
@@ -48,33 +46,30 @@ def needed_lengths(pool: Signatures, own: IntArray, prior: Array, E: Array, dof:
     threshold = k * fdtri(k, dof, 1.0 - np.maximum(chance, 1e-15))
     alike = (share > REPRODUCED) | (pool.owner[rivals] == pool.owner[own][:, None])
     begin = threshold[np.searchsorted(rivals, own)]
-    out = np.full(len(own), np.inf)
-    for factor in LENGTHS:
-        left = np.flatnonzero(np.isinf(out))
-        length, part, rows = factor * begin[left], share[left], np.arange(len(left))
-        evidence = 0.5 * length[:, None] * part + prior[rivals]
-        evidence = evidence - 0.5 * k * np.log1p(length[:, None] / k)
-        named = np.where(alike[left], evidence, -np.inf).argmax(axis=1)
-        explained = part[rows, named]
+    rows, longer = np.arange(len(own)), np.append(LENGTHS, np.inf)
+    low, high = np.zeros_like(own), np.full_like(own, len(LENGTHS))
+    while (low < high).any():  # a longer signature is found where a shorter one is
+        middle = np.minimum((low + high) // 2, len(LENGTHS) - 1)
+        length = LENGTHS[middle] * begin
+        evidence = 0.5 * length[:, None] * share + prior[rivals]
+        evidence -= 0.5 * k * np.log1p(length[:, None] / k)
+        named = np.where(alike, evidence, -np.inf).argmax(axis=1)
+        explained = share[rows, named]
         seen = length * explained
         spread = np.sqrt((2.0 * k[named] + 4.0 * seen) * (1.0 + 0.5 * seen / dof))
         is_beyond = k[named] + seen - POLICY.detection_power * spread >= threshold[named]
-        ahead = evidence[rows, named][:, None] - np.where(alike[left], -np.inf, evidence)
-        apart = np.sqrt(length[:, None] * np.maximum(explained[:, None] - part, 0.0))
-        is_ahead = np.all(ahead >= POLICY.detection_power * apart, axis=1)
-        out[left] = np.where(is_beyond & is_ahead, length, np.inf)
-    return out
+        ahead = evidence[rows, named][:, None] - np.where(alike, -np.inf, evidence)
+        apart = np.sqrt(length[:, None] * np.maximum(explained[:, None] - share, 0.0))
+        is_found = is_beyond & np.all(ahead >= POLICY.detection_power * apart, axis=1)
+        low, high = np.where(is_found, low, middle + 1), np.where(is_found, middle, high)
+    return longer[low] * begin
 
 
 def _thinned(pool: Signatures) -> IntArray:
     """Variants at a few points of every grid."""
-
-    def chosen() -> Iterator[IntArray]:
-        for candidate in range(len(pool.names)):
-            points = np.flatnonzero(pool.owner == candidate)
-            yield points[:: max(1, -(-len(points) // POINTS_OF_GRID))]
-
-    return np.concatenate([*chosen()]) if pool.names else np.zeros(0, dtype=np.int64)
+    grids = [np.flatnonzero(pool.owner == candidate) for candidate in range(len(pool.names))]
+    few = [points[:: max(1, -(-len(points) // POINTS_OF_GRID))] for points in grids]
+    return np.concatenate([np.zeros(0, dtype=np.int64), *few])
 
 
 def _shares(pool: Signatures, own: IntArray, rivals: IntArray, E: Array) -> Array:

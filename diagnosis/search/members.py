@@ -82,28 +82,25 @@ class Verified:
     member: Member
     p_value: float  # probability by chance, corrected for grid and number of candidates
     evidence: float  # gain of log evidence by it
-    held_out: float = 0.0  # held-out error with it over that without it
     density: float = 0.0  # gain of the held-out log predictive density by it
     # effective number it explains, ``(sum d^2)^2 / sum d^4`` of what it changes
     touches: float = 0.0
     # least gain of the log predictive density over domains of which blocks are left out (parts of
     # the time, set-ups)
     domain_density: float = 0.0
-    is_preferred: bool = True  # whether no driver that was not recorded is more likely
 
     @property
     def stands(self) -> bool:
         """Whether all tests are passed."""
         if is_unrecorded(self.member.effect):  # it predicts nothing, so no other hour either
             return self.stands_by_poses
-        return self.stands_by_poses and self.is_preferred and self.domain_density > 0.0
+        return self.stands_by_poses and self.domain_density > 0.0
 
     @property
     def stands_by_poses(self) -> bool:
         """Whether the tests are passed that leave out one pose at a time."""
         return (
             self.is_beyond_chance
-            and self.held_out < 1.0
             and self.density > POLICY.log_evidence_gain
             and self.touches > POLICY.touches_explained
         )
@@ -126,7 +123,6 @@ def tested(others: EffectSet, whole: EffectSet, quick: Verified) -> Verified:
     changed = (others.residual - whole.residual)[:count] ** 2
     found = replace(
         quick,
-        held_out=whole.held_out.rms / max(others.held_out.rms, 1e-300),
         density=float(whole.held_out_log_density - others.held_out_log_density),
         touches=float(changed.sum()) ** 2 / max(float(changed @ changed), 1e-300),
     )

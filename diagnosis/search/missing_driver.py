@@ -141,17 +141,3 @@ def is_own_sensor(effect: Effect) -> bool:
         axis = own.symbol.link if own.symbol.name[1] == own.symbol.link[:1] else ""
     is_of_standard = bool(own.driver) and effect.kind.startswith(own.driver)
     return is_of_standard or bool(axis and own.driver.endswith(axis))
-
-
-def moves_alike(law: Effect, drift: Effect) -> bool:
-    """Whether a law moves what a driver that was not recorded moves.
-
-    The standard, the scale of one axis, or the same component of any two axes, which touches seldom
-    distinguish.
-    """
-    return isinstance(drift, Unrecorded) and _moved(law) == _moved(drift.law)
-
-
-def _moved(effect: Effect) -> tuple[str, str]:
-    own = traits(effect)
-    return ("", own.symbol.name[:2]) if own.symbol is not None else (effect.kind, own.axis)

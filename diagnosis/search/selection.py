@@ -40,7 +40,6 @@ from matstd.diagnosis.search.missing_driver import (
     follows_driver,
     is_own_sensor,
     is_unrecorded,
-    moves_alike,
 )
 from matstd.diagnosis.search.refine import refined_set
 from matstd.diagnosis.search.screening import Budget
@@ -210,25 +209,12 @@ class Search:
             member=member,
             p_value=self.corrected(member, p),
             evidence=float(whole.effects.evidence - others.effects.evidence),
-            is_preferred=self._is_preferred(others, whole, member),
         )
         return tested(others.effects, whole.effects, quick) if quick.is_beyond_chance else quick
 
     def corrected(self, member: Member, p: float) -> float:
         """Probability with the scan of the grid and the number of candidates paid for."""
         return float(min(1.0, p * float(member.signature.tries[0]) * self.pool.tried))
-
-    def _is_preferred(self, others: EffectSubset, whole: EffectSubset, member: Member) -> bool:
-        """Whether a recorded driver is more likely than one that was not recorded.
-
-        What the course of such a driver leaves is more likely its own than another driver's.
-        """
-        if not follows_driver(member.effect):
-            return True
-        if any(moves_alike(member.effect, m.effect) for m in whole.members):
-            return False
-        rivals = self.scores(others).evidence[self._is_unrecorded]
-        return bool(np.all(whole.evidence > rivals))
 
     # --- moves ------------------------------------------------------------------------------------
 
