@@ -48,7 +48,7 @@ from matstd.diagnosis.next_visit import candidate_targets, candidate_touches
 from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.regression import GrossErrors
 from matstd.diagnosis.remarks import Remark, What, noticed, remarks
-from matstd.diagnosis.residual import Region, Structure, regions
+from matstd.diagnosis.residual import Structure, regions
 from matstd.diagnosis.search import (
     MOST_SETS,
     DiagnosisTask,
@@ -165,9 +165,10 @@ def _result(
     """The full report of the last round."""
     final, classes, gross = tested.state, tested.classes, tested.state.base.gross
     left = _beyond_doubt(final.remains, steps[-1].fit)
-    # a residual well below the stated uncertainty is allowed for, whatever pattern it has
-    counted = () if _is_covered(steps[-1].fit) else left
     last, predicting = steps[-1].fit, averaged(task, steps, added, classes, gross)
+    # a residual well below the stated uncertainty is allowed for, whatever pattern it has
+    scatter = float(np.std(last.residual[last.used] / last.run.u[last.used]))
+    counted = () if scatter < POLICY.noise_ratio_covered else left
     repeats = repeatability(last)
     repeat = to_repeat(last, repeats)
     named = [s.effect for s in steps[1:] if s.effect is not None]
@@ -185,6 +186,8 @@ def _result(
     beside = (*added, *final.effects)
     progress(0.8, "what the run could have shown")
     seen = final.library.sample
+    fits = dict.fromkeys((steps[0].fit, last))  # the starting model, and with what it lacks
+    ended = (noticed(What.SEARCH_ENDED, sets=MOST_SETS),) if final.is_ended else ()
     return Diagnosis(
         run=task.run,
         verdict=verdict,
@@ -197,12 +200,12 @@ def _result(
         structure=start,
         left=left,
         depends_on=depends_on,
-        where=_where(steps, verdict),
+        where=regions(last) if verdict is Verdict.UNEXPLAINED else regions(*fits),
         detectable=detectable(seen, final.effects, len(final.library.complement.u)),
         plans=_plans(task, added, classes, gross, rng),
         geometry=geometry,
         faults=faults,
-        remarks=(*not_significant(steps), *_remarks(steps, final)),
+        remarks=(*not_significant(steps), *remarks(last, steps[0].fit), *ended),
         nearest=nearest(task, beside, gross, last, candidates, depends_on, bool(final.drifts))
         if parts.remains.is_real
         else (),
@@ -228,27 +231,6 @@ def _beyond_doubt(left: Sequence[Structure], fit: Fit) -> tuple[Structure, ...]:
     """Patterns that stand however the noise remembers."""
     is_modelled = fit.memory is not None and fit.memory.is_filtered
     return tuple(s for s in left if not is_modelled or s.p_value < POLICY.p_beside_memory)
-
-
-def _is_covered(fit: Fit) -> bool:
-    """Whether the whole residual is well within the stated uncertainty of a touch."""
-    return float(np.std(fit.residual[fit.used] / fit.run.u[fit.used])) < POLICY.noise_ratio_covered
-
-
-def _remarks(steps: Sequence[Step], final: SearchState) -> tuple[Remark, ...]:
-    """What else a user should know, the search's own limit included."""
-    out = remarks(steps[-1].fit, steps[0].fit)
-    if not final.is_ended:
-        return out
-    return (*out, noticed(What.SEARCH_ENDED, sets=MOST_SETS))
-
-
-def _where(steps: Sequence[Step], verdict: Verdict) -> tuple[Region, ...]:
-    """Where the starting model fails; where what is left is unexplained, the last one."""
-    first, last = steps[0].fit, steps[-1].fit
-    if verdict is Verdict.UNEXPLAINED:
-        return regions(last)
-    return regions(first, last if len(steps) > 1 else None)
 
 
 def _candidates(final: SearchState) -> tuple[Candidate, ...]:
