@@ -31,6 +31,9 @@ _LENGTHS = (12.0, 16.0, 20.0, 25.0, 30.0)  # of ISO 4762, mm
 _PAD_RING = 2.5  # mm of a pad round its thread
 _ENGAGED, _SCREWED = 1.5, 1.25  # depth of a thread and reach of its screw, by the diameter
 _SHOULDER = 0.65  # most of the foot's diameter that the thread may take
+_EDGE = 0.2
+"""Between a pad and the edge of its block, mm: places are rounded to 0.1, and a circle that touches
+an edge makes a face that is not valid when it is read again."""
 _WALL = 3.0  # mm between a hole and the next, and between a thread and a face
 _PLATE_LEFT = 8.0  # mm of plate over the head of a screw that is let into its underside
 _SHARES = (0.7, 0.6, 0.5, 0.4)  # of the half sides of a block, where its screws may be
@@ -104,7 +107,7 @@ def _block(patch: FreeformPatch, standard: Standard, details: Details) -> Block:
         for turn in range(_TURNS):
             angle = 2.0 * np.pi * (turn / _TURNS + np.arange(3)[:, None] / 3.0)
             local = share * min(patch.half_size) * np.hstack([np.cos(angle), np.sin(angle)])
-            if (np.abs(local) + pad > np.array(patch.half_size)).any():
+            if (np.abs(local) + pad > np.array(patch.half_size) - _EDGE).any():
                 continue
             places = patch.T_artefact_patch[:2, 3] + local
             if not all(_is_free(p, 0.5 * head + _WALL, standard, details) for p in places):

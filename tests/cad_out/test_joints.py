@@ -2,9 +2,11 @@
 
 from dataclasses import replace
 
+import demo
 import numpy as np
 import pytest
 
+from matstd.artefact.body.freeform import graph_patch
 from matstd.cad_out.details.detail_list import details_of
 from matstd.cad_out.making.joints import PAD_HEIGHT, joints_of
 from matstd.twin.errors import NotBuildable
@@ -20,7 +22,6 @@ def test_threads_stay_in_the_material(upright):
         assert stud.thread <= stud.depth <= thick - 3.0
     for block, patch in zip(joints.blocks, upright.patches, strict=True):
         local = block.places - patch.T_artefact_patch[:2, 3]
-        assert (np.abs(local) + block.pad <= np.array(patch.half_size) + 0.1).all()
         turn = np.sort(np.arctan2(local[:, 1], local[:, 0]))
         assert np.diff(turn) == pytest.approx(np.deg2rad(120.0), abs=0.05)
         grid = patch.grid(0.5)
@@ -31,6 +32,17 @@ def test_threads_stay_in_the_material(upright):
         # in the block no farther than the hole, and more than its diameter
         assert block.thread < block.sunk + block.length - thick < block.depth - thick
         assert block.thread + 1.0 < block.sunk <= thick - 8.0
+
+
+def test_pads_end_before_the_edge_of_their_block(upright):
+    """Places are rounded to 0.1 mm: a pad that would end within 0.05 mm of the edge touches it."""
+    details, (first, *_) = details_of(upright), upright.patches
+    for half in np.arange(14.0, 17.0, 0.1).round(1):
+        size, low = (half, half + 0.5), first.T_artefact_patch[2, 3] - 8.0
+        patch = graph_patch("FF1", first.T_artefact_patch, size, demo.waves(1, 1.0), (5, 5), low)
+        (block,) = joints_of(replace(upright, patches=(patch,)), details).blocks
+        local = block.places - patch.T_artefact_patch[:2, 3]
+        assert (np.abs(local) + block.pad < np.array(size) - 0.1).all()
 
 
 def test_holes_from_below_miss_pads_and_bores(upright):
