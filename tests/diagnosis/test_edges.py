@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from marks import slow
 
 from matstd.diagnosis.answer.run_diagnosis import diagnose
 from matstd.diagnosis.answer.verdict import Verdict
@@ -48,7 +49,7 @@ def slipped(run, rows):
     return replace(run, deviation=deviation)
 
 
-@pytest.mark.parametrize("side", ["start", "end"])
+@pytest.mark.parametrize("side", ["start", *slow("end")])
 def test_a_slip_three_touches_from_an_edge_is_named(run, side) -> None:
     rows = in_time(run.touches, 1)
     rows = rows[:BESIDE] if side == "start" else rows[-BESIDE:]
