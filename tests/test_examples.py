@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import matstd
-from matstd.diagnosis.answer.verdict import Verdict
+from matstd.diagnosis.answer import Verdict
 from matstd.twin.units import UM
 
 ROOT = Path(__file__).parents[1]

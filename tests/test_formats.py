@@ -13,22 +13,23 @@ import pytest
 from formats import examples, paths, tables, undescribed, write_examples
 from pydantic_core import PydanticUndefined
 
-from matstd.artefact.body.standard_file import read_standard
-from matstd.artefact.brief.project_file import read_project
-from matstd.artefact.brief.task_file import read_task
-from matstd.diagnosis.files.diagnosis_file import comparison_table, diagnosis_table
-from matstd.diagnosis.files.model_file import read_model
+from matstd.artefact.body import read_standard
+from matstd.artefact.brief import read_project, read_task
+from matstd.diagnosis.files import comparison_table, diagnosis_table, read_model
 from matstd.importers.files.mapping_file import MappingTable
-from matstd.probe_paths.control.log import read_log
+from matstd.probe_paths.control import read_log
 from matstd.twin.errors import BadFile
-from matstd.twin.files import run_columns, run_file
-from matstd.twin.files.error_file import read_errors
-from matstd.twin.files.keys import Table
-from matstd.twin.files.machine_file import read_machine
-from matstd.twin.files.pose_file import read_poses
-from matstd.twin.files.run_file import read_run
-from matstd.twin.files.sensor_file import read_sensors
-from matstd.twin.machine.ranges import DEFAULT_RANGES
+from matstd.twin.files import (
+    Table,
+    read_errors,
+    read_machine,
+    read_poses,
+    read_run,
+    read_sensors,
+    run_columns,
+    run_file,
+)
+from matstd.twin.machine import DEFAULT_RANGES
 from matstd.twin.units import UM, URAD
 
 ROOT = Path(__file__).parents[1]

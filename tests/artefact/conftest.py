@@ -3,14 +3,13 @@
 import numpy as np
 import pytest
 
-from matstd.artefact.layout.blank import Blank
-from matstd.artefact.reach.probe_clearance import ProbeShape
-from matstd.artefact.reach.touchable import ProbeReach
-from matstd.artefact.worth.touch_criterion import criterion_for
-from matstd.sensitivity.first_order.workspace import Workspace
-from matstd.sensitivity.population.sampling import Population
-from matstd.twin.machine.chain import Axis, make_chain
-from matstd.twin.record.touches import Setup
+from matstd.artefact.layout import Blank
+from matstd.artefact.reach import ProbeReach, ProbeShape
+from matstd.artefact.worth import criterion_for
+from matstd.sensitivity.first_order import Workspace
+from matstd.sensitivity.population import Population
+from matstd.twin.machine import Axis, make_chain
+from matstd.twin.record import Setup
 from matstd.twin.units import DEG, UM
 
 

@@ -7,29 +7,27 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from matstd.artefact.body import read_standard, write_standard
 from matstd.artefact.body.spline import greville
-from matstd.artefact.body.standard_file import read_standard, write_standard
-from matstd.artefact.certify.calibration_fit import fit_calibration, fitted_ball, measured_balls
-from matstd.artefact.certify.cmm_points_file import CmmPoints, read_cmm_points
+from matstd.artefact.certify import fit_calibration, read_cmm_points
+from matstd.artefact.certify.calibration_fit import fitted_ball, measured_balls
+from matstd.artefact.certify.cmm_points_file import CmmPoints
 from matstd.artefact.certify.cmm_stylus import TIP, TO_PIVOT, Angle, reaches
 from matstd.artefact.certify.dmis import APPROACH
-from matstd.artefact.tool.probe import Probe
-from matstd.artefact.worth.calibration import Calibration
-from matstd.cad_out.details.detail_list import engraved_on
+from matstd.artefact.tool import Probe
+from matstd.artefact.worth import Calibration
+from matstd.cad_out.details import engraved_on
 from matstd.cli import main
-from matstd.diagnosis.answer.run_diagnosis import diagnose
-from matstd.diagnosis.fit.identification import fit_run
-from matstd.probe_paths.campaign.contact_solver import VirtualMachine
-from matstd.probe_paths.campaign.simulation import simulate
-from matstd.probe_paths.emit.program import make_programs
-from matstd.probe_paths.emit.writer import Feeds
-from matstd.probe_paths.language.dialect_file import read_dialect
-from matstd.probe_paths.plan.planner import plan_touches
-from matstd.probe_paths.plan.touch_plan import PlanOptions
+from matstd.diagnosis.answer import diagnose
+from matstd.diagnosis.fit import fit_run
+from matstd.probe_paths.campaign import VirtualMachine, simulate
+from matstd.probe_paths.emit import Feeds, make_programs
+from matstd.probe_paths.language import read_dialect
+from matstd.probe_paths.plan import PlanOptions, plan_touches
 from matstd.stages.cmm import cmm_program
 from matstd.twin.errors import BadFile, NotEnoughData
 from matstd.twin.frames import apply, pose, rotation
-from matstd.twin.library.ordinary import ordinary_model
+from matstd.twin.library import ordinary_model
 from matstd.twin.units import UM
 
 ROOT = Path(__file__).parents[2]

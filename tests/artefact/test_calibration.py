@@ -6,11 +6,16 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from matstd.artefact.layout.blank import Blank
-from matstd.artefact.worth import ball_choice
-from matstd.artefact.worth.calibration import Calibration
-from matstd.artefact.worth.touch_choice import each_at, face_grid, poses_within, sphere_grid
-from matstd.information.criteria.posterior import Posterior
+from matstd.artefact.layout import Blank
+from matstd.artefact.worth import (
+    Calibration,
+    ball_choice,
+    each_at,
+    face_grid,
+    poses_within,
+    sphere_grid,
+)
+from matstd.information.criteria import Posterior
 from matstd.twin.errors import DesignError
 from matstd.twin.frames import apply, fixed_xyz, pose
 from matstd.twin.units import DEG, NM, UM

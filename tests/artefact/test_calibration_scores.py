@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 from matstd.api.standards import calibrate
-from matstd.artefact.body.datum import DatumSphere
-from matstd.artefact.body.standard_file import read_standard, write_standard
+from matstd.artefact.body import DatumSphere, read_standard, write_standard
 from matstd.artefact.certify.waviness import dense_lines
 from matstd.twin.errors import BadFile
 from matstd.twin.units import UM

@@ -3,12 +3,10 @@
 import numpy as np
 import pytest
 
-from matstd.artefact.body.limits import Limits
+from matstd.artefact.body import Limits
 from matstd.artefact.body.solids import column
-from matstd.artefact.layout.blank import Blank
-from matstd.artefact.layout.wavy import Wave, wavy_face
-from matstd.artefact.reach.probe_clearance import ProbeShape, clearance
-from matstd.artefact.reach.workshop import Solid
+from matstd.artefact.layout import Blank, Wave, wavy_face
+from matstd.artefact.reach import ProbeShape, Solid, clearance
 from matstd.twin.errors import DesignError, ShapeMismatch
 from matstd.twin.frames import unit
 from matstd.twin.sampling import grid_points

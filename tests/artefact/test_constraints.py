@@ -6,18 +6,19 @@ import numpy as np
 import pytest
 from sites import Site, patch_of_site, standard_from_sites
 
-from matstd.artefact.body.freeform import OVERHANG, graph_patch
-from matstd.artefact.body.limits import (
+from matstd.artefact.body import (
+    OVERHANG,
+    Base,
     Limits,
     check,
     constraints,
+    graph_patch,
     max_slope,
     min_concave_radius,
-    overhang,
 )
+from matstd.artefact.body.limits import overhang
 from matstd.artefact.body.spline import clamped_knots
-from matstd.artefact.body.standard import Base
-from matstd.artefact.layout.blank import Blank, Fittings
+from matstd.artefact.layout import Blank, Fittings
 from matstd.twin.errors import NotBuildable, ShapeMismatch
 from matstd.twin.units import DEG
 

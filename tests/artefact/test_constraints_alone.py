@@ -7,24 +7,23 @@ import numpy as np
 import pytest
 from briefs import brief_of
 
-from matstd.artefact.body.freeform import graph_patch
-from matstd.artefact.body.limits import (
+from matstd.artefact.body import (
     Limits,
     check,
     constraints,
+    graph_patch,
     max_slope,
     min_concave_radius,
-    overhang,
 )
-from matstd.artefact.brief.brief import PlacementOptions
-from matstd.artefact.layout.blank import Blank
-from matstd.artefact.place.placement import design_standard
-from matstd.artefact.reach.probe_clearance import ProbeShape
-from matstd.artefact.reach.touchable import ProbeReach, Requests
-from matstd.artefact.worth.touch_choice import TouchOptions
-from matstd.sensitivity.first_order.workspace import Workspace
+from matstd.artefact.body.limits import overhang
+from matstd.artefact.brief import PlacementOptions
+from matstd.artefact.layout import Blank
+from matstd.artefact.place import design_standard
+from matstd.artefact.reach import ProbeReach, ProbeShape, Requests
+from matstd.artefact.worth import TouchOptions
+from matstd.sensitivity.first_order import Workspace
 from matstd.twin.errors import NotBuildable, NotReachable, OutsideTravel
-from matstd.twin.record.touches import Setup
+from matstd.twin.record import Setup
 from matstd.twin.units import DEG
 
 LIMITS = Limits()

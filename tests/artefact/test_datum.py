@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from matstd.artefact.body.datum import DatumPlane, DatumSphere, MountingHole, outline_distance
+from matstd.artefact.body import DatumSphere, MountingHole, outline_distance
+from matstd.artefact.body.datum import DatumPlane
 from matstd.twin.errors import ShapeMismatch
 from matstd.twin.units import NM
 

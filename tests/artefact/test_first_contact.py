@@ -3,9 +3,7 @@
 import numpy as np
 import pytest
 
-from matstd.artefact.body.first_contact import contact
-from matstd.artefact.body.patch import Meeting
-from matstd.artefact.body.standard import Standard
+from matstd.artefact.body import Meeting, Standard, contact
 from matstd.twin.units import NM, UM
 
 BALL = 3.0

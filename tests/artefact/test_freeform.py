@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from scipy.interpolate import BSpline, NdBSpline, make_interp_spline
 from scipy.optimize import brentq, minimize
 
-from matstd.artefact.body.freeform import OVERHANG, graph_patch
+from matstd.artefact.body import OVERHANG, graph_patch
 from matstd.artefact.body.spline import basis, clamped_knots, greville
 from matstd.twin.errors import ShapeMismatch
 from matstd.twin.frames import fixed_xyz, pose

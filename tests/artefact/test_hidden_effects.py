@@ -6,19 +6,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from matstd.artefact.hidden.smooth_effects import (
-    BUMP_WIDTHS,
+from matstd.artefact.hidden import (
     SIZE,
     HiddenEffect,
-    _At,
-    form_columns,
     hidden_effects,
     hidden_power,
     measured_together,
     possible_places,
     touched,
 )
-from matstd.artefact.worth.calibration import Calibration
+from matstd.artefact.hidden.smooth_effects import BUMP_WIDTHS, _At, form_columns
+from matstd.artefact.worth import Calibration
 from matstd.artefact.worth.touch_choice import touches_at
 from matstd.twin.units import DEG, UM
 

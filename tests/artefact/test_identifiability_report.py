@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from matstd.artefact.compare import alternatives as module
+from matstd.artefact.compare import identifiability_report
 from matstd.artefact.compare.alternatives import (
     alternatives,
     joined_rows,
@@ -13,18 +14,16 @@ from matstd.artefact.compare.alternatives import (
     other_setups,
     touches_reached_in,
 )
-from matstd.artefact.compare.identifiability import identifiability_report
-from matstd.artefact.layout.blank import Blank
-from matstd.artefact.reach.touchable import ProbeReach
-from matstd.artefact.tool.probe import Probe
-from matstd.artefact.worth.touch_criterion import criterion_for, random_touches, setup_parameters
-from matstd.information.identifiability.estimable_combinations import combinations
-from matstd.information.identifiability.freedoms import Resolution
-from matstd.report.identifiability.identifiability_file import identifiability_table
-from matstd.sensitivity.first_order.workspace import Workspace
-from matstd.sensitivity.population.sampling import Population
+from matstd.artefact.layout import Blank
+from matstd.artefact.reach import ProbeReach
+from matstd.artefact.tool import Probe
+from matstd.artefact.worth import criterion_for, random_touches, setup_parameters
+from matstd.information.identifiability import Resolution, combinations
+from matstd.report.identifiability import identifiability_table
+from matstd.sensitivity.first_order import Workspace
+from matstd.sensitivity.population import Population
 from matstd.twin.files.whole import write_json
-from matstd.twin.record.touches import Setup
+from matstd.twin.record import Setup
 from matstd.twin.units import DEG, UM
 
 TOUCHES = 240

@@ -5,10 +5,9 @@ from dataclasses import fields
 import numpy as np
 import pytest
 
-from matstd.artefact.compare import comparison
-from matstd.artefact.compare.comparison import Rival, compared
-from matstd.artefact.layout.blank import Blank
-from matstd.artefact.reach.touchable import Requests
+from matstd.artefact.compare import Rival, compared, comparison
+from matstd.artefact.layout import Blank
+from matstd.artefact.reach import Requests
 from matstd.artefact.worth import Criterion, TouchOptions, Visibility
 from matstd.twin import beside
 from matstd.twin.units import DEG

@@ -6,27 +6,28 @@ import numpy as np
 import pytest
 from briefs import brief_of
 
-from matstd.artefact.body.first_contact import contact
-from matstd.artefact.body.limits import Limits, check
-from matstd.artefact.body.patch import Meeting
-from matstd.artefact.body.standard import Base
-from matstd.artefact.body.standard_file import read_standard, write_standard
-from matstd.artefact.brief.brief import PlacementOptions
-from matstd.artefact.compare.power import proof_power, task_normals
-from matstd.artefact.layout.blank import Blank
-from matstd.artefact.place.placement import design_standard
-from matstd.artefact.reach.probe_clearance import ProbeShape, clearance
-from matstd.artefact.reach.touchable import ProbeReach
+from matstd.artefact.body import (
+    Base,
+    Limits,
+    Meeting,
+    check,
+    contact,
+    read_standard,
+    write_standard,
+)
+from matstd.artefact.brief import PlacementOptions
+from matstd.artefact.compare import proof_power, task_normals
+from matstd.artefact.layout import Blank
+from matstd.artefact.place import design_standard
+from matstd.artefact.reach import ProbeReach, ProbeShape, clearance
+from matstd.artefact.worth import CriterionOptions, TouchOptions, poses_within
 from matstd.artefact.worth.potential import library_effects
-from matstd.artefact.worth.touch_choice import TouchOptions, poses_within
-from matstd.artefact.worth.touch_criterion import CriterionOptions
-from matstd.information.criteria.posterior import Posterior
-from matstd.sensitivity.population.dependence import Group, grouped
-from matstd.sensitivity.population.sampling import Population, drawn_scales
+from matstd.information.criteria import Posterior
+from matstd.sensitivity.population import Group, Population, drawn_scales, grouped
 from matstd.twin.errors import DesignError, NotBuildable, NotReachable
-from matstd.twin.machine.kinematics import table_to_tool, tip
-from matstd.twin.model.model import Model, columns
-from matstd.twin.record.touches import Setup
+from matstd.twin.machine import table_to_tool, tip
+from matstd.twin.model import Model, columns
+from matstd.twin.record import Setup
 from matstd.twin.units import DEG, NM, UM
 
 pytestmark = pytest.mark.slow  # whole designs; `test_placement_parts` and the command's test stay

@@ -8,37 +8,39 @@ import numpy as np
 import pytest
 from sites import spread
 
-from matstd.artefact.body.datum import outline_distance
-from matstd.artefact.body.freeform import graph_patch
-from matstd.artefact.body.limits import Limits, max_slope, min_concave_radius
-from matstd.artefact.body.material import Material
+from matstd.artefact.body import (
+    Limits,
+    Material,
+    graph_patch,
+    max_slope,
+    min_concave_radius,
+    outline_distance,
+)
 from matstd.artefact.compare.comparison import _scatter
-from matstd.artefact.layout.blank import Blank
-from matstd.artefact.layout.post import post_foot, post_stiffness
-from matstd.artefact.layout.shapes import smooth_heights
-from matstd.artefact.layout.side_by_side import most_side_by_side
-from matstd.artefact.layout.upright import (
-    ball_on_post,
+from matstd.artefact.layout import (
+    Blank,
     balls_fit,
     balls_on_posts,
     faces_beside,
     faces_fit,
     freeform_faces,
     holes_on,
+    most_side_by_side,
+    post_stiffness,
 )
+from matstd.artefact.layout.post import post_foot
+from matstd.artefact.layout.shapes import smooth_heights
+from matstd.artefact.layout.upright import ball_on_post
 from matstd.artefact.place import identifying
-from matstd.artefact.reach.probe_clearance import ProbeShape
-from matstd.artefact.reach.touchable import ProbeReach, Requests, joined
+from matstd.artefact.reach import ProbeReach, ProbeShape, Requests, joined
+from matstd.artefact.worth import TouchOptions, chosen_touches_on, random_touches, repaired_touches
 from matstd.artefact.worth.attribution import error_shares
 from matstd.artefact.worth.potential import residual_after
-from matstd.artefact.worth.touch_choice import TouchOptions, chosen_touches_on, repaired_touches
-from matstd.artefact.worth.touch_criterion import random_touches
 from matstd.twin.compute import silent
 from matstd.twin.errors import NotBuildable, NotReachable
 from matstd.twin.frames import fixed_xyz, pose
-from matstd.twin.machine.chain import Axis, make_chain
-from matstd.twin.machine.kinematics import inverse_linear
-from matstd.twin.record.touches import Setup
+from matstd.twin.machine import Axis, inverse_linear, make_chain
+from matstd.twin.record import Setup
 from matstd.twin.units import DEG, NM
 
 PROBE = ProbeShape(3.0, ((80.0, 2.0), (160.0, 25.0)))

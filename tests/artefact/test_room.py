@@ -6,21 +6,30 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from matstd.artefact.body.freeform import graph_patch
-from matstd.artefact.feasibility.room import check_room, lightest_room, room_among
-from matstd.artefact.feasibility.touched import mutually_probeable, touches_on, untouchable_faces
-from matstd.artefact.layout.blank import Blank
-from matstd.artefact.layout.rival_artefacts import with_spheres
-from matstd.artefact.layout.side_by_side import most_side_by_side
-from matstd.artefact.layout.upright import balls_on_posts, faces_beside, freeform_faces
+from matstd.artefact.body import graph_patch
+from matstd.artefact.feasibility import (
+    check_room,
+    lightest_room,
+    mutually_probeable,
+    room_among,
+    touches_on,
+    untouchable_faces,
+)
+from matstd.artefact.layout import (
+    Blank,
+    balls_on_posts,
+    faces_beside,
+    freeform_faces,
+    most_side_by_side,
+    with_spheres,
+)
 from matstd.artefact.place.body_choice import BodyChoice
-from matstd.artefact.reach.probe_clearance import ProbeShape
-from matstd.artefact.reach.touchable import ProbeReach, joined
-from matstd.artefact.worth.touch_choice import each_at, sphere_grid
+from matstd.artefact.reach import ProbeReach, ProbeShape, joined
+from matstd.artefact.worth import each_at, sphere_grid
 from matstd.twin.errors import NotBuildable
 from matstd.twin.frames import pose, rotation
-from matstd.twin.machine.chain import Axis, make_chain
-from matstd.twin.record.touches import Setup
+from matstd.twin.machine import Axis, make_chain
+from matstd.twin.record import Setup
 from matstd.twin.units import DEG
 
 PROBE = ProbeShape(3.0, ((80.0, 2.0), (160.0, 25.0)))

@@ -5,19 +5,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from matstd.artefact.hidden.smooth_effects import (
+from matstd.artefact.hidden import (
     hidden_effects,
     hidden_power,
     measured_together,
     possible_places,
+    showing_touches,
     touched,
 )
-from matstd.artefact.hidden.touches_that_show import _Choice, showing_touches
-from matstd.artefact.layout.blank import Blank
-from matstd.artefact.layout.wavy import Wave, wavy_face
+from matstd.artefact.hidden.touches_that_show import _Choice
+from matstd.artefact.layout import Blank, Wave, wavy_face
 from matstd.artefact.place.wavy_proof import showing_on_body, square_of
-from matstd.artefact.worth import each_at, face_grid
-from matstd.artefact.worth.calibration import Calibration
+from matstd.artefact.worth import Calibration, each_at, face_grid
 from matstd.artefact.worth.touch_choice import touches_at
 from matstd.twin.errors import NotReachable
 from matstd.twin.units import DEG, UM

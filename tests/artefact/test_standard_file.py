@@ -5,9 +5,8 @@ from dataclasses import fields, replace
 import numpy as np
 import pytest
 
-from matstd.artefact.body.freeform import ErrorShare
+from matstd.artefact.body import ErrorShare, read_standard, write_standard
 from matstd.artefact.body.sag import Sag
-from matstd.artefact.body.standard_file import read_standard, write_standard
 from matstd.twin.errors import BadFile, DesignError
 
 

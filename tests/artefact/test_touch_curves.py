@@ -3,10 +3,9 @@
 import numpy as np
 import pytest
 
-from matstd.artefact.worth.touch_criterion import random_touches
-from matstd.artefact.worth.touch_curves import TouchCurve, touch_curve
-from matstd.information.criteria.posterior import Posterior
-from matstd.report.plots.proof_pictures import draw_touch_curves
+from matstd.artefact.worth import TouchCurve, random_touches, touch_curve
+from matstd.information.criteria import Posterior
+from matstd.report.plots import draw_touch_curves
 from matstd.twin.errors import DesignError
 from matstd.twin.units import UM
 

@@ -14,9 +14,7 @@ import pytest
 from scipy.interpolate import BSpline
 from scipy.spatial.transform import Rotation
 
-from matstd.artefact.body.datum import DatumSphere
-from matstd.artefact.body.known import Known, Verdict
-from matstd.artefact.body.standard_file import read_standard, write_standard
+from matstd.artefact.body import DatumSphere, Known, Verdict, read_standard, write_standard
 from matstd.cli import main
 from matstd.twin.units import UM
 

@@ -6,15 +6,12 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from matstd.artefact.body.limits import Limits, max_slope, min_concave_radius
-from matstd.artefact.body.standard import Base
-from matstd.artefact.hidden.scan_lines import Scan, scanned
-from matstd.artefact.hidden.scan_path import scan_path, write_scan_path
-from matstd.artefact.layout.blank import Blank
-from matstd.artefact.layout.rival_artefacts import with_spheres
-from matstd.artefact.layout.upright import holes_on
-from matstd.artefact.layout.wavy import Wave, wavy_face
-from matstd.artefact.place.family import Family, FamilyFigures, chosen_family, flat_pads
+from matstd.artefact.body import Base, Limits, max_slope, min_concave_radius
+from matstd.artefact.hidden import Scan, scanned, write_scan_path
+from matstd.artefact.hidden.scan_path import scan_path
+from matstd.artefact.layout import Blank, Wave, holes_on, wavy_face, with_spheres
+from matstd.artefact.place import Family, FamilyFigures
+from matstd.artefact.place.family import chosen_family, flat_pads
 from matstd.twin.errors import NotBuildable
 from matstd.twin.units import DEG, UM
 

@@ -9,14 +9,20 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from matstd.artefact.body.solids import BLEND
-from matstd.cad_out.details.detail_list import details_of, engraved_on
-from matstd.cad_out.details.dot_font import DOT
-from matstd.cad_out.details.mounting import RELIEF
-from matstd.cad_out.details.places import datum_touches, plan_room
-from matstd.cad_out.details.seats import glue_gap, seat_of
-from matstd.cad_out.details.tolerances import Tolerance, notes_of
-from matstd.cad_out.meshes.mesh import ball_mesh, inner_folds, mesh_volume
+from matstd.artefact.body import BLEND
+from matstd.cad_out.details import (
+    DOT,
+    RELIEF,
+    Tolerance,
+    datum_touches,
+    details_of,
+    engraved_on,
+    glue_gap,
+    notes_of,
+)
+from matstd.cad_out.details.places import plan_room
+from matstd.cad_out.details.seats import seat_of
+from matstd.cad_out.meshes import ball_mesh, inner_folds, mesh_volume
 from matstd.cad_out.verify.annotation_check import missing_annotations
 from matstd.cad_out.verify.part21 import read_entities, read_faces, read_instances
 from matstd.cad_out.verify.part21_tolerances import read_notes, read_signs, read_tolerances

@@ -11,12 +11,12 @@ import pytest
 import volume_by_hand
 
 from matstd import cad_out
-from matstd.artefact.body.datum import DatumSphere
-from matstd.cad_out.details.detail_list import details_of
-from matstd.cad_out.kernel import process
-from matstd.cad_out.kernel.process import Ending, run_apart
+from matstd.artefact.body import DatumSphere
+from matstd.cad_out.details import details_of
+from matstd.cad_out.kernel import process, run_apart
+from matstd.cad_out.kernel.process import Ending
 from matstd.cad_out.kernel.settled import with_units_of_density
-from matstd.cad_out.meshes.mesh import (
+from matstd.cad_out.meshes import (
     chord_errors,
     is_watertight,
     manifold_volume,

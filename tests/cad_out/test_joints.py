@@ -6,9 +6,9 @@ import demo
 import numpy as np
 import pytest
 
-from matstd.artefact.body.freeform import graph_patch
-from matstd.cad_out.details.detail_list import details_of
-from matstd.cad_out.making.joints import PAD_HEIGHT, joints_of
+from matstd.artefact.body import graph_patch
+from matstd.cad_out.details import details_of
+from matstd.cad_out.making import PAD_HEIGHT, joints_of
 from matstd.twin.errors import NotBuildable
 
 

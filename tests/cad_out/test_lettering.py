@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from matstd.cad_out.details.dot_font import _GLYPHS, CUTTER, DEPTH, DOT, LARGE, SMALL, dots, size
-from matstd.cad_out.details.lettering import Lettering
+from matstd.cad_out.details import CUTTER, DEPTH, DOT, Lettering
+from matstd.cad_out.details.dot_font import _GLYPHS, LARGE, SMALL, dots, size
 from matstd.twin.frames import pose
 
 CAP = np.pi * DEPTH**2 * (3.0 * CUTTER - DEPTH) / 3.0

@@ -6,16 +6,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from matstd.artefact.body.freeform import graph_patch
-from matstd.artefact.body.material import Material
-from matstd.artefact.body.standard import Base
-from matstd.artefact.layout.post import cantilever_stiffness
-from matstd.cad_out.details.detail_list import details_of
+from matstd.artefact.body import Base, Material, graph_patch
+from matstd.artefact.layout import cantilever_stiffness
+from matstd.cad_out.details import details_of
+from matstd.cad_out.making import Making, making_of, stiffness_of, with_sag, write_making
 from matstd.cad_out.making.cutting import OVERHANG, RADIUS, cutting_of, is_free, untrimmed_radius
 from matstd.cad_out.making.hexahedron import CORNERS, cube
 from matstd.cad_out.making.hints import hints_of, step_over
-from matstd.cad_out.making.making_file import Making, making_of, write_making
-from matstd.cad_out.making.stiffness import GRAVITY, stiffness_of, with_sag
+from matstd.cad_out.making.stiffness import GRAVITY
 from matstd.twin.frames import pose
 from matstd.twin.units import DEG, UM
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from matstd.cad_out.meshes.mesh import aspects
-from matstd.cad_out.triangles.charts import bisected
+from matstd.cad_out.meshes import aspects
+from matstd.cad_out.triangles import bisected
 from matstd.cad_out.triangles.delaunay import Sheet, circumcircles, cross
 
 CHORD = 0.02

@@ -7,11 +7,10 @@ import pytest
 from bench import oracle_tip
 
 from matstd.cli import main
-from matstd.compensation.field.state import State
-from matstd.compensation.part_programs.frame import Frame
-from matstd.compensation.part_programs.program import read_part_program
-from matstd.compensation.programs.compensation import compensated
-from matstd.compensation.tables.header import header_of
+from matstd.compensation.field import State
+from matstd.compensation.part_programs import Frame, read_part_program
+from matstd.compensation.programs import compensated
+from matstd.compensation.tables import header_of
 from matstd.twin.units import DEG, UM
 
 GCODE = """G0 X0 Y0 Z-20

@@ -4,8 +4,7 @@ import numpy as np
 from bench import LENGTH
 
 from matstd.cli import main
-from matstd.compensation.field.machine_errors import deviation
-from matstd.compensation.field.over_workspace import contributions
+from matstd.compensation.field import contributions, deviation
 from matstd.twin.numbers import rms_length as rms
 from matstd.twin.units import UM
 

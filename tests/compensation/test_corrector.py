@@ -14,11 +14,9 @@ import numpy as np
 import pytest
 from bench import LENGTH
 
-from matstd.compensation.linuxcnc import control_files
-from matstd.compensation.linuxcnc.control_files import SCALE, Control, hal_text, write_control_files
-from matstd.compensation.linuxcnc.link import serve_linuxcnc
-from matstd.compensation.service.output import OutputLimits
-from matstd.compensation.service.service import Service
+from matstd.compensation.linuxcnc import Control, control_files, serve_linuxcnc, write_control_files
+from matstd.compensation.linuxcnc.control_files import SCALE, hal_text
+from matstd.compensation.service import OutputLimits, Service
 from matstd.twin.errors import BadFile, DesignError
 from matstd.twin.units import UM
 

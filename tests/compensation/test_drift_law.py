@@ -9,15 +9,12 @@ from bench import LENGTH
 
 from matstd.api.known_errors import with_unknowns
 from matstd.cli import main
-from matstd.compensation.field.machine_errors import MachineErrors, deviation
-from matstd.compensation.field.state import State
-from matstd.compensation.service.output import OutputLimits, Quality
-from matstd.compensation.service.service import Service
-from matstd.diagnosis.drift.drift_file import write_drift
-from matstd.diagnosis.drift.judged import Judged
+from matstd.compensation.field import MachineErrors, State, deviation
+from matstd.compensation.service import OutputLimits, Service
+from matstd.compensation.service.output import Quality
+from matstd.diagnosis.drift import DriftRecord, Judged, write_drift
 from matstd.diagnosis.drift.lags import Lagged
 from matstd.diagnosis.drift.linear import LinearLaw
-from matstd.diagnosis.drift.record import DriftRecord
 from matstd.effect_kinds import DRIFT_LAW
 from matstd.twin.errors import BadFile, DesignError, UnknownEffect, UnknownSymbol
 from matstd.twin.library import parse_effect, register

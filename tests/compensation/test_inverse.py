@@ -4,21 +4,23 @@ import numpy as np
 import pytest
 from bench import LENGTH, oracle_tip
 
-from matstd.compensation.field.inverse import correction, deviation_after
-from matstd.compensation.field.machine_errors import MachineErrors
-from matstd.compensation.field.over_workspace import (
+from matstd.compensation.field import (
+    MachineErrors,
+    State,
     aligned,
+    correction,
+    deviation_after,
     relative_columns,
     result_of,
     sample_workspace,
 )
-from matstd.compensation.field.state import State
-from matstd.diagnosis.files.model_file import SavedModel, SourceEntry
-from matstd.diagnosis.fit.prior import Prior
+from matstd.diagnosis.files import SavedModel
+from matstd.diagnosis.files.model_file import SourceEntry
+from matstd.diagnosis.fit import Prior
 from matstd.twin.effects.setup_error import SetupError
 from matstd.twin.errors import BadValue, NotReachable
-from matstd.twin.library.catalogue import parse_effect
-from matstd.twin.model.model import Model
+from matstd.twin.library import parse_effect
+from matstd.twin.model import Model
 from matstd.twin.numbers import rms_length
 from matstd.twin.units import NM, UM, URAD
 

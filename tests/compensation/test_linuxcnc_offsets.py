@@ -12,11 +12,9 @@ import pytest
 from bench import LENGTH
 from control import AXES, AXIS, INI, a_user, run_linuxcnc
 
-from matstd.compensation.field.machine_errors import MachineErrors
-from matstd.compensation.linuxcnc.control_files import SOCKET, Control, write_control_files
-from matstd.compensation.linuxcnc.link import serve_linuxcnc
-from matstd.compensation.service.output import OutputLimits
-from matstd.compensation.service.service import Service
+from matstd.compensation.field import MachineErrors
+from matstd.compensation.linuxcnc import SOCKET, Control, serve_linuxcnc, write_control_files
+from matstd.compensation.service import OutputLimits, Service
 from matstd.twin.library import parse_effect
 from matstd.twin.units import UM
 

@@ -6,16 +6,14 @@ import numpy as np
 import pytest
 
 from matstd.cli import main
-from matstd.compensation.field.inverse import datum_of
-from matstd.compensation.field.machine_errors import MachineErrors, deviation
-from matstd.compensation.field.state import State
-from matstd.compensation.part_programs.frame import Frame
-from matstd.compensation.part_programs.program import Load, read_loads, read_part_program
-from matstd.compensation.programs.compensation import compensated, passed
-from matstd.compensation.tables.header import header_of
+from matstd.compensation.field import MachineErrors, State, datum_of, deviation
+from matstd.compensation.part_programs import Frame, read_loads, read_part_program
+from matstd.compensation.part_programs.program import Load
+from matstd.compensation.programs import compensated, passed
+from matstd.compensation.tables import header_of
 from matstd.twin.errors import BadFile
-from matstd.twin.library.catalogue import parse_effect
-from matstd.twin.machine.chain import Axis, make_chain
+from matstd.twin.library import parse_effect
+from matstd.twin.machine import Axis, make_chain
 from matstd.twin.units import UM
 
 PROGRAM = "G21 G90 G17\nG0 X0 Y0 Z0\nG1 X50 F500\nG1 X100\nG1 Y50\nM30\n"

@@ -7,15 +7,12 @@ import pytest
 from bench import LENGTH, oracle_tip
 from marks import slow
 
-from matstd.compensation.field.inverse import correction
-from matstd.compensation.field.machine_errors import MachineErrors
-from matstd.compensation.field.over_workspace import sample_workspace
-from matstd.compensation.service.point_correction import PointCorrection
+from matstd.compensation.field import MachineErrors, correction, sample_workspace
+from matstd.compensation.service import PointCorrection
 from matstd.compensation.service.tabulated import error_tables
 from matstd.twin.errors import DesignError, OutsideTravel
-from matstd.twin.files.machine_file import read_machine
-from matstd.twin.library.catalogue import parse_effect
-from matstd.twin.library.ordinary import ordinary_model
+from matstd.twin.files import read_machine
+from matstd.twin.library import ordinary_model, parse_effect
 from matstd.twin.units import NM, UM
 
 MACHINES = Path(__file__).parents[2] / "examples" / "machines"

@@ -8,11 +8,9 @@ import pytest
 from bench import LENGTH
 from rs274 import is_there, moves
 
-from matstd.compensation.field.inverse import datum_of
-from matstd.compensation.part_programs.frame import Frame
-from matstd.compensation.part_programs.motion import Motion, Paths
-from matstd.compensation.part_programs.program import read_part_program
-from matstd.compensation.programs.compensation import compensated
+from matstd.compensation.field import datum_of
+from matstd.compensation.part_programs import Frame, Motion, Paths, read_part_program
+from matstd.compensation.programs import compensated
 from matstd.twin.errors import BadFile
 
 R = 5.0

@@ -8,14 +8,12 @@ from bench import LENGTH, oracle_tip
 from rs274 import is_there, moves
 
 from matstd.cli import main
-from matstd.compensation.field.machine_errors import MachineErrors
-from matstd.compensation.field.state import State
-from matstd.compensation.part_programs.motion import Keep
-from matstd.compensation.part_programs.program import read_part_program
-from matstd.compensation.programs.compensation import compensated
-from matstd.compensation.tables.header import header_of
+from matstd.compensation.field import MachineErrors, State
+from matstd.compensation.part_programs import Keep, read_part_program
+from matstd.compensation.programs import compensated
+from matstd.compensation.tables import header_of
 from matstd.twin.errors import BadFile, OutsideTravel
-from matstd.twin.library.catalogue import parse_effect
+from matstd.twin.library import parse_effect
 from matstd.twin.units import DEG, NM, UM
 
 PROBE = "T3 P3 Z160.0 D6.0"

@@ -11,8 +11,8 @@ import pytest
 from control import AXES, AXIS, INI, a_user, run_linuxcnc
 from rs274 import interpreted, is_there
 
-from matstd.compensation.part_programs.program import read_part_program
-from matstd.compensation.programs.compensation import compensated
+from matstd.compensation.part_programs import read_part_program
+from matstd.compensation.programs import compensated
 from matstd.twin.errors import BadFile
 from matstd.twin.units import UM
 

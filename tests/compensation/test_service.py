@@ -10,16 +10,13 @@ import numpy as np
 import pytest
 from bench import LENGTH
 
-from matstd.compensation.field.inverse import correction
-from matstd.compensation.field.machine_errors import MachineErrors
-from matstd.compensation.field.state import State
-from matstd.compensation.service.opcua_server import NAMESPACE, prompt, serve
-from matstd.compensation.service.output import Output, OutputLimits, Quality
-from matstd.compensation.service.service import Service
+from matstd.compensation.field import MachineErrors, State, correction
+from matstd.compensation.service import NAMESPACE, OutputLimits, Service, prompt, serve
+from matstd.compensation.service.output import Output, Quality
 from matstd.compensation.service.tabulated import MAX_MOMENTS, History
 from matstd.twin.errors import BadValue, DesignError
-from matstd.twin.library.catalogue import parse_effect
-from matstd.twin.thermal.thermal_lag import ThermalLag
+from matstd.twin.library import parse_effect
+from matstd.twin.thermal import ThermalLag
 from matstd.twin.units import DEG, MINUTE, NM, UM
 
 LIMITS = OutputLimits(most=100.0 * UM, rate=1.0, patience=0.5, hold=5.0)

@@ -7,31 +7,34 @@ import pytest
 from bench import LENGTH, oracle_tip
 
 from matstd.cli import main
-from matstd.compensation.field.inverse import datum_of, deviation_after
-from matstd.compensation.field.machine_errors import MachineErrors, deviation
-from matstd.compensation.field.over_workspace import (
+from matstd.compensation.field import (
+    MachineErrors,
+    State,
     UncorrectedError,
-    _as_determined,
     aligned,
+    datum_of,
+    deviation,
+    deviation_after,
     sample_workspace,
 )
-from matstd.compensation.field.state import State
-from matstd.compensation.tables.along_axes import along_axes
-from matstd.compensation.tables.by_name import line
-from matstd.compensation.tables.formats import (
+from matstd.compensation.field.over_workspace import _as_determined
+from matstd.compensation.tables import (
     FORMATS,
     Harmful,
+    Header,
+    header_of,
     refuse_harmful,
     verify_tables,
     write_tables,
 )
-from matstd.compensation.tables.header import Header, header_of
-from matstd.diagnosis.geometry.rows import Estimate
+from matstd.compensation.tables.along_axes import along_axes
+from matstd.compensation.tables.by_name import line
+from matstd.diagnosis.geometry import Estimate
 from matstd.report.compensation import table_lines
 from matstd.twin.errors import BadFile
-from matstd.twin.files.machine_file import read_machine
-from matstd.twin.library.catalogue import parse_effect
-from matstd.twin.machine.chain import Axis, make_chain
+from matstd.twin.files import read_machine
+from matstd.twin.library import parse_effect
+from matstd.twin.machine import Axis, make_chain
 from matstd.twin.numbers import rms_length as rms
 from matstd.twin.units import DEG, NM, UM, URAD
 

@@ -6,12 +6,12 @@ from made_up import ARM, arm_poses
 from scipy.optimize import minimize
 from scipy.spatial.transform import Rotation
 
-from matstd.diagnosis.fit.identification import fit_run
+from matstd.diagnosis.fit import fit_run
 from matstd.diagnosis.geometry.arm_links import arm_functionals
 from matstd.diagnosis.geometry.quantities import geometric_effects
-from matstd.twin.effects.location import LocationError
-from matstd.twin.library.ordinary import ordinary_model
-from matstd.twin.record.run import Run
+from matstd.twin.effects import LocationError
+from matstd.twin.library import ordinary_model
+from matstd.twin.record import Run
 
 JOINTS = ("C", "B", "B1", "A")
 

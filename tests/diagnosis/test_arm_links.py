@@ -3,15 +3,14 @@
 import numpy as np
 import pytest
 
-from matstd.diagnosis.fit.identification import fit_run
-from matstd.diagnosis.geometry.arm_machine import found_arm
-from matstd.diagnosis.geometry.learnt import geometry_rows
+from matstd.diagnosis.fit import fit_run
+from matstd.diagnosis.geometry import found_arm, geometry_rows
 from matstd.diagnosis.remarks import What, noticed, remarks
+from matstd.importers import read_sheet
 from matstd.importers.arms import arm_from_dh, read_arm, tracker_run
-from matstd.importers.sheets import read_sheet
-from matstd.report.geometry.geometry_words import quantity_name
-from matstd.twin.library.ordinary import ordinary_model
-from matstd.twin.model.model import Model
+from matstd.report.geometry import quantity_name
+from matstd.twin.library import ordinary_model
+from matstd.twin.model import Model
 from matstd.twin.units import DEG, UM, URAD
 
 A = np.array([350.0, 1150.0, 41.0, 0.0, 0.0, 0.0])

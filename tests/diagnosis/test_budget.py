@@ -1,10 +1,10 @@
 """A search that never has enough ends at its limit, and says so."""
 
 import matstd.diagnosis.search.search_loop as rounds
-from matstd.diagnosis.answer.run_diagnosis import diagnose
+from matstd.diagnosis.answer import diagnose
 from matstd.diagnosis.remarks import What, noticed
-from matstd.diagnosis.search.screening import MOST_SETS, Budget
-from matstd.twin.library.catalogue import parse_effect
+from matstd.diagnosis.search import MOST_SETS, Budget
+from matstd.twin.library import parse_effect
 
 KEY = (8, "hmc1995", ("thermal-expansion(Y,scaleY)",))
 LIBRARY = ("thermal-expansion(Y,scaleY)", "backlash(X)", "drift", "probe-radius", "probe-lobing")

@@ -13,17 +13,16 @@ from simulator_experiment import MACHINES
 from simulator_runs import read_runs, simulated_runs
 
 from matstd.cli import main
-from matstd.diagnosis.accuracy.proof import probed_volume
-from matstd.diagnosis.charts.chart import LimitSource, chart_of
+from matstd.diagnosis.accuracy import probed_volume
+from matstd.diagnosis.charts import Charted, LimitSource, Occasion, Overall, history
+from matstd.diagnosis.charts.chart import chart_of
 from matstd.diagnosis.charts.course import course_of, critical
-from matstd.diagnosis.charts.machine_history import history
-from matstd.diagnosis.charts.occasion import Charted, Occasion, Overall, volumetric_error
-from matstd.diagnosis.files.model_writer import model_text
-from matstd.diagnosis.fit.identification import fit_run
-from matstd.diagnosis.geometry.learnt import geometry_rows
-from matstd.diagnosis.geometry.rows import Estimate
+from matstd.diagnosis.charts.occasion import volumetric_error
+from matstd.diagnosis.files import model_text
+from matstd.diagnosis.fit import fit_run
+from matstd.diagnosis.geometry import Estimate, geometry_rows
 from matstd.twin.errors import BadFile, DesignError, NotEnoughData
-from matstd.twin.library.ordinary import ordinary_model
+from matstd.twin.library import ordinary_model
 from matstd.twin.units import UM, URAD
 
 KEY = Charted(Overall.EFFECT, "size")

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from matstd.diagnosis.fit.describe import size
-from matstd.twin.model.effect import Parameter
+from matstd.twin.model import Parameter
 
 DRAWS = 1000
 BINOMIAL = 4.0

@@ -8,14 +8,12 @@ import pytest
 from simulator_case import read_back, simulate_case
 
 from matstd.cli import main
-from matstd.diagnosis.faults.suspects import Fault
-from matstd.diagnosis.faults.trial import description_faults, faults_of_refused
-from matstd.diagnosis.fit.identification import fit_run
-from matstd.report.geometry.fault_words import fault_sentences
+from matstd.diagnosis.faults import Fault, description_faults, faults_of_refused
+from matstd.diagnosis.fit import fit_run
+from matstd.report.geometry import fault_sentences
 from matstd.twin.effects import LocationError
 from matstd.twin.errors import BadFile
-from matstd.twin.library.catalogue import parse_effect
-from matstd.twin.library.ordinary import ordinary_model
+from matstd.twin.library import ordinary_model, parse_effect
 
 
 @pytest.fixture(scope="module")

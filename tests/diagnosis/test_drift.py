@@ -3,11 +3,18 @@
 import numpy as np
 import pytest
 
-from matstd.diagnosis.drift.judged import chosen, judge, offered
+from matstd.diagnosis.drift import (
+    DriftRecord,
+    chosen,
+    joined,
+    judge,
+    offered,
+    predict_with_probings,
+)
 from matstd.diagnosis.drift.lags import Lagged, at_once, first_order_lag
 from matstd.diagnosis.drift.linear import WEIGHTS, fitted, ridge
-from matstd.diagnosis.drift.probing import RENEWAL_TIME, predict_with_probings
-from matstd.diagnosis.drift.record import DriftRecord, blocks, joined
+from matstd.diagnosis.drift.probing import RENEWAL_TIME
+from matstd.diagnosis.drift.record import blocks
 from matstd.twin.compute import silent
 from matstd.twin.units import UM
 

@@ -8,11 +8,8 @@ import numpy as np
 import pytest
 
 from matstd.cli import main
-from matstd.diagnosis.drift.clocks import lead
-from matstd.diagnosis.drift.drift_file import read_law
-from matstd.diagnosis.drift.log_file import read_log, read_probed
-from matstd.diagnosis.drift.record import varying
-from matstd.report.drift.drift_words import clock_line
+from matstd.diagnosis.drift import lead, read_law, read_log, read_probed, varying
+from matstd.report.drift import clock_line
 from matstd.twin.errors import BadFile
 from matstd.twin.units import UM
 

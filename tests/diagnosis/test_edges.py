@@ -6,13 +6,12 @@ import numpy as np
 import pytest
 from marks import slow
 
-from matstd.diagnosis.answer.run_diagnosis import diagnose
-from matstd.diagnosis.answer.verdict import Verdict
-from matstd.diagnosis.evidence.effect_signatures import ScaledEffect
-from matstd.diagnosis.regression.gross import GrossErrors
+from matstd.diagnosis.answer import Verdict, diagnose
+from matstd.diagnosis.evidence import ScaledEffect
+from matstd.diagnosis.regression import GrossErrors
 from matstd.diagnosis.search.edges import unexplained_near_slip
 from matstd.twin.effects.artefact import ArtefactSlip
-from matstd.twin.library.catalogue import parse_effect
+from matstd.twin.library import parse_effect
 from matstd.twin.units import UM
 
 NOTHING = (2, "hsm600u", ())

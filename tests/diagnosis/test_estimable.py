@@ -5,9 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from matstd.diagnosis.fit.estimability import estimable
-from matstd.diagnosis.fit.identification import fit_run
-from matstd.twin.model.model import columns
+from matstd.diagnosis.fit import estimable, fit_run
+from matstd.twin.model import columns
 from matstd.twin.units import NM
 
 MACHINES = 20

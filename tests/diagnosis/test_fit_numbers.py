@@ -9,16 +9,15 @@ import numpy as np
 import pytest
 from marks import slow
 
-from matstd.diagnosis.fit.identification import fit_run
-from matstd.diagnosis.regression.linear import left_out, solve
-from matstd.diagnosis.regression.noise import replicate_groups
+from matstd.diagnosis.fit import fit_run
+from matstd.diagnosis.regression import left_out, replicate_groups, solve
 from matstd.diagnosis.remarks import What, noticed, remarks
-from matstd.importers.instruments.axis_run import one_axis_machine, positioning_run
-from matstd.importers.instruments.positioning import PositioningTest
-from matstd.twin.effects.setup_error import SHIFT_SD, TURN_SD, setup_errors
+from matstd.importers import one_axis_machine, positioning_run
+from matstd.importers.instruments import PositioningTest
+from matstd.twin.effects import SHIFT_SD, TURN_SD, setup_errors
 from matstd.twin.errors import NotEnoughData
-from matstd.twin.library.ordinary import ordinary_model
-from matstd.twin.model.model import columns
+from matstd.twin.library import ordinary_model
+from matstd.twin.model import columns
 from matstd.twin.units import NM, UM
 
 ROUNDING = 1e-12

@@ -5,11 +5,10 @@ import pytest
 from flat_plate import HEIGHT, lag, write_plate
 from marks import slow
 
-from matstd.diagnosis.answer.run_diagnosis import diagnose
-from matstd.diagnosis.answer.verdict import Verdict
-from matstd.report.words.verdict_words import verdict_sentence
-from matstd.twin.files.run_file import read_run
-from matstd.twin.record.commanded import with_commanded
+from matstd.diagnosis.answer import Verdict, diagnose
+from matstd.report.words import verdict_sentence
+from matstd.twin.files import read_run
+from matstd.twin.record import with_commanded
 from matstd.twin.units import UM
 
 

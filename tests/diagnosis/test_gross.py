@@ -6,14 +6,13 @@ import numpy as np
 import pytest
 from made_up import arm_poses
 
-from matstd.diagnosis.fit.identification import fit_run
-from matstd.diagnosis.regression.gross import find_gross, shots
-from matstd.diagnosis.remarks import What
-from matstd.diagnosis.remarks.run_remarks import remarks
+from matstd.diagnosis.fit import fit_run
+from matstd.diagnosis.regression import find_gross, shots
+from matstd.diagnosis.remarks import What, remarks
 from matstd.diagnosis.residual.crowds import crowds
-from matstd.report.words.remark_words import remark_sentence
-from matstd.twin.library.ordinary import ordinary_model
-from matstd.twin.record.run import Run
+from matstd.report.words import remark_sentence
+from matstd.twin.library import ordinary_model
+from matstd.twin.record import Run
 from matstd.twin.units import UM
 
 

@@ -10,14 +10,12 @@ import numpy as np
 import pytest
 from simulator_experiment import random_experiment, random_noise
 
-from matstd.diagnosis.answer.run_diagnosis import diagnose
-from matstd.diagnosis.answer.verdict import Verdict
-from matstd.diagnosis.fit.identification import fit_run
+from matstd.diagnosis.answer import Verdict, diagnose
+from matstd.diagnosis.fit import fit_run
 from matstd.diagnosis.remarks import What
-from matstd.report.words.verdict_words import verdict_sentence
-from matstd.twin.library.catalogue import parse_effect
-from matstd.twin.library.ordinary import ordinary_model
-from matstd.twin.model.model import Model, columns
+from matstd.report.words import verdict_sentence
+from matstd.twin.library import ordinary_model, parse_effect
+from matstd.twin.model import Model, columns
 from matstd.twin.units import UM
 
 WITHIN = 4.0

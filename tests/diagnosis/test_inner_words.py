@@ -4,11 +4,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from matstd.diagnosis.answer.run_diagnosis import diagnose
-from matstd.diagnosis.fit.describe import inner_unit
-from matstd.twin.library.catalogue import parse_effect
-from matstd.twin.model.effect import Inner
-from matstd.twin.thermal.thermal_lag import ThermalLag
+from matstd.diagnosis.answer import diagnose
+from matstd.diagnosis.fit import inner_unit
+from matstd.twin.library import parse_effect
+from matstd.twin.model import Inner
+from matstd.twin.thermal import ThermalLag
 
 HIDDEN = (5, "hsm600u", ("thermal-lag(EXC)",))
 

@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from matstd.diagnosis.fit.identification import fit_run
+from matstd.diagnosis.fit import fit_run
 from matstd.diagnosis.remarks.order import jump_in_order
 from matstd.importers.points import linear_machine, points_run
 from matstd.importers.points.point_list import PointList
-from matstd.twin.library.ordinary import ordinary_model
+from matstd.twin.library import ordinary_model
 from matstd.twin.units import UM
 
 N, AT = 40, 23

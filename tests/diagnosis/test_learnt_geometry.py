@@ -5,20 +5,21 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from matstd.diagnosis.fit.identification import fit_run
-from matstd.diagnosis.fit.prior import Prior
-from matstd.diagnosis.geometry.functionals import Quantity
-from matstd.diagnosis.geometry.learnt import Rung, geometry_rows, learnt_geometry
-from matstd.diagnosis.geometry.rows import Estimate, GeometryRow
+from matstd.diagnosis.fit import Prior, fit_run
+from matstd.diagnosis.geometry import (
+    Estimate,
+    GeometryRow,
+    Quantity,
+    Rung,
+    geometry_rows,
+    learnt_geometry,
+)
 from matstd.report.geometry.geometry_words import correction_line, noted_lines
 from matstd.twin.errors import BadValue
 from matstd.twin.frames import apply, inverse
-from matstd.twin.library.ordinary import ordinary_model
-from matstd.twin.machine.chain import Axis, make_chain
-from matstd.twin.machine.kinematics import tip
-from matstd.twin.record.instrument import Instrument
-from matstd.twin.record.run import Run
-from matstd.twin.record.touches import Setup, Touches
+from matstd.twin.library import ordinary_model
+from matstd.twin.machine import Axis, make_chain, tip
+from matstd.twin.record import Instrument, Run, Setup, Touches
 from matstd.twin.units import UM, URAD
 
 KEY = (2, "hsm600u")

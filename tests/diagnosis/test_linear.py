@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from matstd.diagnosis.regression.linear import left_out, solve
+from matstd.diagnosis.regression import left_out, solve
 
 ROUNDING = 1e-9
 

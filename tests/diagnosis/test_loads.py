@@ -5,14 +5,12 @@ from dataclasses import replace
 import numpy as np
 from made_up import made_up
 
-from matstd.diagnosis.fit.describe import Role, reported
-from matstd.diagnosis.fit.identification import fit_run
-from matstd.diagnosis.remarks import What
-from matstd.diagnosis.remarks.run_remarks import remarks
-from matstd.report.words.remark_words import remark_sentence
-from matstd.twin.library.catalogue import parse_effect
-from matstd.twin.model.model import Model, columns
-from matstd.twin.record.run import Run
+from matstd.diagnosis.fit import Role, fit_run, reported
+from matstd.diagnosis.remarks import What, remarks
+from matstd.report.words import remark_sentence
+from matstd.twin.library import parse_effect
+from matstd.twin.model import Model, columns
+from matstd.twin.record import Run
 from matstd.twin.units import UM
 
 

@@ -5,16 +5,14 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from matstd.diagnosis.answer.run_diagnosis import diagnose
-from matstd.diagnosis.answer.steps import Step, weakest
-from matstd.diagnosis.answer.verdict import Verdict
+from matstd.diagnosis.answer import Step, Verdict, diagnose
+from matstd.diagnosis.answer.steps import weakest
 from matstd.diagnosis.choice.noise_memory import CHOSEN_ROWS, chosen_rows
-from matstd.diagnosis.fit.describe import Reported, Role
+from matstd.diagnosis.fit import Reported, Role
 from matstd.twin.frames import Array
 from matstd.twin.machine import Axis, make_chain
-from matstd.twin.record.instrument import Instrument
-from matstd.twin.record.run import Run
-from matstd.twin.record.touches import Setup, Touches, motion
+from matstd.twin.record import Instrument, Run, Setup, Touches
+from matstd.twin.record.touches import motion
 from matstd.twin.units import UM
 
 AXIS = make_chain("one axis", "[w f X t]", {"X": Axis((0.0, 400.0))})

@@ -7,20 +7,16 @@ import pytest
 from marks import slow
 from scipy.linalg import block_diag
 
-from matstd.diagnosis.answer.run_diagnosis import diagnose
-from matstd.diagnosis.answer.verdict import Verdict
-from matstd.diagnosis.files.model_writer import model_text
-from matstd.diagnosis.fit.identification import fit_run
-from matstd.diagnosis.fit.prior import Prior
+from matstd.diagnosis.answer import Verdict, diagnose
+from matstd.diagnosis.files import model_text
+from matstd.diagnosis.fit import Prior, fit_run
 from matstd.diagnosis.policy import POLICY
-from matstd.diagnosis.regression.memory import Memory, likely_memory, whitener
-from matstd.diagnosis.remarks.run_remarks import remarks
-from matstd.report.words.remark_words import remark_sentence
-from matstd.report.words.verdict_words import verdict_sentence
-from matstd.twin.effects.setup_error import setup_errors
-from matstd.twin.library.catalogue import proposals
-from matstd.twin.library.ordinary import ordinary_model
-from matstd.twin.model.model import columns
+from matstd.diagnosis.regression import Memory, likely_memory, whitener
+from matstd.diagnosis.remarks import remarks
+from matstd.report.words import remark_sentence, verdict_sentence
+from matstd.twin.effects import setup_errors
+from matstd.twin.library import ordinary_model, proposals
+from matstd.twin.model import columns
 from matstd.twin.units import UM
 
 SEED = (2, "hmc1995")

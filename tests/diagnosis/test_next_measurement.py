@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from matstd.diagnosis.next_visit.offers import APPROACH_CONE, candidate_touches
-from matstd.twin.machine.kinematics import tip
+from matstd.diagnosis.next_visit import candidate_touches
+from matstd.diagnosis.next_visit.offers import APPROACH_CONE
+from matstd.twin.machine import tip
 from matstd.twin.units import NM
 
 

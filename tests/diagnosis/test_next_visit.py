@@ -14,9 +14,9 @@ from matstd.api.saved import write_learnt
 from matstd.diagnosis.files import visit_text
 from matstd.diagnosis.laws import learn_laws
 from matstd.diagnosis.laws.beginning import Beginning
-from matstd.diagnosis.next_visit import NoPlan, Schedule, plan_visit
+from matstd.diagnosis.next_visit import NoPlan, Schedule, greedy, plan_visit, separation
 from matstd.diagnosis.next_visit.course import TIME_CONSTANTS, Course
-from matstd.diagnosis.next_visit.discrimination import greedy, log_odds_drawn, separation
+from matstd.diagnosis.next_visit.discrimination import log_odds_drawn
 from matstd.diagnosis.next_visit.hypotheses import Hypothesis
 from matstd.diagnosis.next_visit.planned_visit import LEAST_SEPARATION
 from matstd.diagnosis.next_visit.planned_visit import _planned as planned

@@ -10,7 +10,7 @@ from made_up import run_of
 from matstd.diagnosis.answer import Diagnosis, Verdict, diagnose
 from matstd.report.words import sizes
 from matstd.twin.errors import UnknownEffect
-from matstd.twin.library.catalogue import parse_effect
+from matstd.twin.library import parse_effect
 from matstd.twin.units import UM
 
 NOISE = 0.15 * UM

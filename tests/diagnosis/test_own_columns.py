@@ -7,18 +7,15 @@ import pytest
 from made_up import gauge_touches
 from scipy.integrate import solve_ivp
 
-from matstd.diagnosis.answer.comparison import compare
-from matstd.diagnosis.answer.run_diagnosis import diagnose
+from matstd.diagnosis.answer import compare, diagnose
+from matstd.diagnosis.choice import candidate_effects
 from matstd.diagnosis.choice.field import sized_field
-from matstd.diagnosis.choice.prediction import candidate_effects
-from matstd.diagnosis.evidence.effect_signatures import ScaledEffect
-from matstd.diagnosis.files.model_file import read_model
-from matstd.diagnosis.files.model_writer import model_text
-from matstd.diagnosis.fit.prior import Prior
-from matstd.diagnosis.search.task import DiagnosisTask
-from matstd.twin.library.catalogue import parse_effect
-from matstd.twin.library.ordinary import ordinary_model
-from matstd.twin.record.run import Run
+from matstd.diagnosis.evidence import ScaledEffect
+from matstd.diagnosis.files import model_text, read_model
+from matstd.diagnosis.fit import Prior
+from matstd.diagnosis.search import DiagnosisTask
+from matstd.twin.library import ordinary_model, parse_effect
+from matstd.twin.record import Run
 from matstd.twin.units import MINUTE, UM
 
 N = 150

@@ -11,8 +11,8 @@ from made_up import run_of
 
 from matstd.diagnosis.answer import Verdict, diagnose
 from matstd.diagnosis.answer.alike import even_step
-from matstd.diagnosis.fit.describe import Role
-from matstd.report.words.diagnosis_words import scanned_sentence
+from matstd.diagnosis.fit import Role
+from matstd.report.words import scanned_sentence
 from matstd.twin.effects.periodic import scanned_periods
 from matstd.twin.frames import Array
 from matstd.twin.model import is_tunable

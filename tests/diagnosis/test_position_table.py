@@ -8,15 +8,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from matstd.diagnosis.answer.run_diagnosis import diagnose
-from matstd.diagnosis.evidence.effect_signatures import ScaledEffect
-from matstd.diagnosis.fit.prior import Prior
-from matstd.diagnosis.search.task import DiagnosisTask
-from matstd.importers.instruments.axis_run import one_axis_machine, positioning_run
-from matstd.importers.instruments.positioning import PositioningTest
-from matstd.twin.library.catalogue import parse_effect
-from matstd.twin.library.ordinary import ordinary_model
-from matstd.twin.record.run import Run
+from matstd.diagnosis.answer import diagnose
+from matstd.diagnosis.evidence import ScaledEffect
+from matstd.diagnosis.fit import Prior
+from matstd.diagnosis.search import DiagnosisTask
+from matstd.importers import one_axis_machine, positioning_run
+from matstd.importers.instruments import PositioningTest
+from matstd.twin.library import ordinary_model, parse_effect
+from matstd.twin.record import Run
 from matstd.twin.units import UM
 
 L = 500.0

@@ -9,33 +9,25 @@ from scipy.integrate import solve_ivp
 
 from matstd.api.diagnosing import candidates
 from matstd.diagnosis.accuracy import Promise, blocks
-from matstd.diagnosis.answer.ambiguity import ConfusionClass, Rival
+from matstd.diagnosis.answer import ConfusionClass, Diagnosis, Step, compare, diagnose
+from matstd.diagnosis.answer.ambiguity import Rival
 from matstd.diagnosis.answer.averaged import averaged
-from matstd.diagnosis.answer.comparison import compare
-from matstd.diagnosis.answer.run_diagnosis import diagnose
 from matstd.diagnosis.answer.sizes import sizes
-from matstd.diagnosis.answer.steps import Step
-from matstd.diagnosis.answer.verdict import Diagnosis
-from matstd.diagnosis.choice import prediction
+from matstd.diagnosis.choice import Choice, candidate_effects, prediction, with_chosen_set
 from matstd.diagnosis.choice.bodies import bodies
-from matstd.diagnosis.choice.chosen_set import with_chosen_set
 from matstd.diagnosis.choice.field import PRIOR_SIZES, sized_field
-from matstd.diagnosis.choice.prediction import Choice, candidate_effects, without
-from matstd.diagnosis.evidence.effect_signatures import ResidualSpace, ScaledEffect, projected
-from matstd.diagnosis.evidence.evidence import EffectSet
-from matstd.diagnosis.fit.identification import fit_run
-from matstd.diagnosis.fit.prior import Prior
-from matstd.diagnosis.regression.memory import Memory
-from matstd.diagnosis.search.search_loop import searched
-from matstd.diagnosis.search.task import DiagnosisTask
+from matstd.diagnosis.choice.prediction import without
+from matstd.diagnosis.evidence import EffectSet, ResidualSpace, ScaledEffect, projected
+from matstd.diagnosis.fit import Prior, fit_run
+from matstd.diagnosis.regression import Memory
+from matstd.diagnosis.search import DiagnosisTask, searched
 from matstd.report.verdict import promise_sentence
 from matstd.report.words.diagnosis_words import named_value
 from matstd.twin.errors import DesignError
-from matstd.twin.library.catalogue import parse_effect
-from matstd.twin.library.ordinary import ordinary_model
-from matstd.twin.model.model import columns
-from matstd.twin.record.run import Run
-from matstd.twin.thermal.thermal_field import field
+from matstd.twin.library import ordinary_model, parse_effect
+from matstd.twin.model import columns
+from matstd.twin.record import Run
+from matstd.twin.thermal import field
 from matstd.twin.units import MINUTE, UM
 
 N = 240

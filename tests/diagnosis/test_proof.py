@@ -5,14 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from matstd.diagnosis.accuracy.proof import probed_volume, prove
-from matstd.diagnosis.fit.identification import fit_run
-from matstd.sensitivity.population.sampling import Population, drawn_errors
+from matstd.diagnosis.accuracy import probed_volume, prove
+from matstd.diagnosis.fit import fit_run
+from matstd.sensitivity.population import Population, drawn_errors
 from matstd.twin.frames import apply, fixed_xyz, inverse, pose
-from matstd.twin.library.ordinary import ordinary_model
-from matstd.twin.machine.kinematics import exact_tip
-from matstd.twin.model.effect import contribution
-from matstd.twin.record.touches import Setup
+from matstd.twin.library import ordinary_model
+from matstd.twin.machine import exact_tip
+from matstd.twin.model import contribution
+from matstd.twin.record import Setup
 from matstd.twin.units import NM, UM
 
 MACHINES = 6

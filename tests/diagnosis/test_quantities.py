@@ -9,11 +9,9 @@ from made_up import gauge_touches, made_up
 from matstd.diagnosis.fit import Role, fit_run, reported
 from matstd.diagnosis.geometry import Quantity, geometry_rows, learnt_geometry
 from matstd.twin.library import ordinary_model, parse_effect
-from matstd.twin.machine.chain import make_chain
+from matstd.twin.machine import make_chain
 from matstd.twin.model import Model
-from matstd.twin.record.instrument import Instrument
-from matstd.twin.record.run import Run
-from matstd.twin.record.touches import Touches, at_poses
+from matstd.twin.record import Instrument, Run, Touches, at_poses
 from matstd.twin.units import MINUTE, UM, URAD
 
 U = 0.3 * UM

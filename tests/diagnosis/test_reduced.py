@@ -5,17 +5,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from matstd.diagnosis.answer.comparison import compare
-from matstd.diagnosis.fit.identification import fit_run
-from matstd.diagnosis.fit.prior import Prior
+from matstd.diagnosis.answer import compare
+from matstd.diagnosis.fit import Prior, fit_run
+from matstd.diagnosis.reduced import compared_board, diagnosed_board
 from matstd.diagnosis.reduced.base import Base
-from matstd.diagnosis.reduced.board import compared_board, diagnosed_board, mix
+from matstd.diagnosis.reduced.board import mix
 from matstd.diagnosis.reduced.matrices import reduced
 from matstd.diagnosis.reduced.switches import lagrange, switch
-from matstd.diagnosis.regression.memory import Memory
+from matstd.diagnosis.regression import Memory
 from matstd.twin.effects.backlash import KIND as BACKLASH
-from matstd.twin.library.ordinary import ordinary_model
-from matstd.twin.model.model import Model, columns
+from matstd.twin.library import ordinary_model
+from matstd.twin.model import Model, columns
 from matstd.twin.thermal.thermal_lag import KIND as LAG
 
 SAME = 1e-7

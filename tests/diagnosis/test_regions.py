@@ -11,13 +11,12 @@ from simulator_experiment import MACHINES, STATED_NOISE, random_experiment
 from simulator_laws import local_law
 
 from matstd.diagnosis.files.diagnosis_file import conditions_text
-from matstd.diagnosis.fit.identification import fit_run
-from matstd.diagnosis.residual.boxes import Condition, Side
-from matstd.diagnosis.residual.failing_regions import observed_error, regions
+from matstd.diagnosis.fit import fit_run
+from matstd.diagnosis.residual import Condition, Side, observed_error, regions
 from matstd.report.words.diagnosis_words import region_words
 from matstd.twin.laws import carrier_of
 from matstd.twin.library import ordinary_model
-from matstd.twin.model.model import Model
+from matstd.twin.model import Model
 from matstd.twin.record import with_commanded
 from matstd.twin.units import UM, URAD
 

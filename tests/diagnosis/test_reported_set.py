@@ -9,26 +9,23 @@ from run_text import every
 from simulator_case import simulate_case
 
 from matstd.cli import main
+from matstd.diagnosis.answer import ConfusionClass
 from matstd.diagnosis.answer import reported_set as reporting
-from matstd.diagnosis.answer.ambiguity import ConfusionClass, Rival
+from matstd.diagnosis.answer.ambiguity import Rival
 from matstd.diagnosis.answer.reported_set import reported_set
 from matstd.diagnosis.answer.steps import left_by
-from matstd.diagnosis.choice.chosen_set import choice_remarks
-from matstd.diagnosis.choice.prediction import Choice, ChoiceRule
+from matstd.diagnosis.choice import Choice, choice_remarks
+from matstd.diagnosis.choice.prediction import ChoiceRule
+from matstd.diagnosis.files import model_text, read_model
 from matstd.diagnosis.files.diagnosis_file import choice_table
-from matstd.diagnosis.files.model_file import read_model
-from matstd.diagnosis.files.model_writer import model_text
-from matstd.diagnosis.fit.identification import fit_run
-from matstd.diagnosis.fit.learnt_fit import Learnt
-from matstd.diagnosis.fit.prior import Prior
-from matstd.diagnosis.regression.memory import Memory
-from matstd.diagnosis.search import search_loop
-from matstd.diagnosis.search.task import DiagnosisTask
-from matstd.report.words.diagnosis_words import figures, number_words
-from matstd.twin.library.catalogue import parse_effect
-from matstd.twin.library.ordinary import ordinary_model
-from matstd.twin.model.model import Model, columns
-from matstd.twin.record.copies import without_copies
+from matstd.diagnosis.fit import Learnt, Prior, fit_run
+from matstd.diagnosis.regression import Memory
+from matstd.diagnosis.search import DiagnosisTask, search_loop
+from matstd.report.words import figures
+from matstd.report.words.diagnosis_words import number_words
+from matstd.twin.library import ordinary_model, parse_effect
+from matstd.twin.model import Model, columns
+from matstd.twin.record import without_copies
 from matstd.twin.units import UM
 
 LAG = (5, "hsm600u", ("thermal-lag(EXC)",))

@@ -7,24 +7,22 @@ import pytest
 from made_up import arm_poses
 
 from matstd.diagnosis.answer.ambiguity import confusion_class, plausibility
-from matstd.diagnosis.evidence.effect_signatures import (
+from matstd.diagnosis.evidence import (
+    EffectSet,
     Grid,
     ResidualSpace,
     ScaledEffect,
+    addition,
     signatures,
     tuned_variants,
 )
-from matstd.diagnosis.evidence.evidence import EffectSet, addition
-from matstd.diagnosis.fit.identification import fit_run
+from matstd.diagnosis.fit import fit_run
 from matstd.diagnosis.policy import POLICY
+from matstd.diagnosis.search import MOST_SETS, Library, Search, clearly_best, is_series, refined
 from matstd.diagnosis.search.further_parts import further_periods, tables
-from matstd.diagnosis.search.refine import refined
-from matstd.diagnosis.search.screening import MOST_SETS, Library, joined_shortlists
-from matstd.diagnosis.search.search_loop import clearly_best
-from matstd.diagnosis.search.selection import Search, is_series
-from matstd.twin.library.catalogue import parse_effect
-from matstd.twin.library.ordinary import ordinary_model
-from matstd.twin.model.model import columns
+from matstd.diagnosis.search.screening import joined_shortlists
+from matstd.twin.library import ordinary_model, parse_effect
+from matstd.twin.model import columns
 from matstd.twin.units import MINUTE, UM
 
 KEY = (2, "hsm600u")

@@ -3,11 +3,10 @@
 import numpy as np
 from made_up import ARM, arm_poses
 
-from matstd.diagnosis.answer.run_diagnosis import diagnose
-from matstd.twin.library.catalogue import parse_effect, proposals
-from matstd.twin.library.ordinary import ordinary_model
-from matstd.twin.model.model import Model
-from matstd.twin.record.run import Run
+from matstd.diagnosis.answer import diagnose
+from matstd.twin.library import ordinary_model, parse_effect, proposals
+from matstd.twin.model import Model
+from matstd.twin.record import Run
 from matstd.twin.units import UM, URAD
 
 NOISE = 10.0 * UM

@@ -12,19 +12,15 @@ from simulator_machine import read_machine
 from simulator_runs import read_runs, simulated_runs
 
 from matstd.cli import main
-from matstd.diagnosis.answer.run_diagnosis import diagnose
+from matstd.diagnosis.answer import Verdict, diagnose
 from matstd.diagnosis.answer.trend import single_change
-from matstd.diagnosis.answer.verdict import Verdict
 from matstd.diagnosis.files import diagnosis_table
-from matstd.diagnosis.fit.identification import fit_run
-from matstd.diagnosis.fit.prior import Prior
-from matstd.diagnosis.geometry.changes import changing
-from matstd.diagnosis.geometry.learnt import Rung, changed_runs
-from matstd.report.geometry.trend_words import change_sentences
-from matstd.twin.library.catalogue import parse_effect, proposals
-from matstd.twin.library.ordinary import ordinary_model
-from matstd.twin.model.model import Model
-from matstd.twin.record.several_runs import joined
+from matstd.diagnosis.fit import Prior, fit_run
+from matstd.diagnosis.geometry import Rung, changed_runs, changing
+from matstd.report.geometry import change_sentences
+from matstd.twin.library import ordinary_model, parse_effect, proposals
+from matstd.twin.model import Model
+from matstd.twin.record import joined
 from matstd.twin.units import UM, URAD
 
 MACHINE, POSES = "hsm600u", 5

@@ -5,8 +5,7 @@ import pytest
 from simulator_case import read_back, simulate_case
 from simulator_draw import draw
 
-from matstd.diagnosis.answer.run_diagnosis import diagnose
-from matstd.diagnosis.answer.verdict import Verdict
+from matstd.diagnosis.answer import Verdict, diagnose
 
 MACHINES = ("hsm600u", "fork", "hmc1995")
 EMPTY = 40

@@ -15,19 +15,17 @@ from simulator_effects import Hidden
 from simulator_experiment import MACHINES, STATED_NOISE, random_experiment
 from simulator_warmth import probed_warm, true_scales
 
-from matstd.diagnosis.answer.comparison import compare
-from matstd.diagnosis.fit.identification import fit_run
-from matstd.diagnosis.geometry.functionals import Quantity
-from matstd.diagnosis.geometry.learnt import geometry_rows
+from matstd.diagnosis.answer import compare
+from matstd.diagnosis.fit import fit_run
+from matstd.diagnosis.geometry import Quantity, geometry_rows
 from matstd.diagnosis.remarks import BodySize
 from matstd.diagnosis.remarks.run_remarks import _fixing
-from matstd.diagnosis.task.visits import visits_of
-from matstd.report.words.remark_words import remark_sentence
+from matstd.diagnosis.task import visits_of
+from matstd.report.words import remark_sentence
 from matstd.twin.files.run_writer import run_text as written
-from matstd.twin.library.catalogue import parse_effect, proposals
-from matstd.twin.library.ordinary import ordinary_model
+from matstd.twin.library import ordinary_model, parse_effect, proposals
 from matstd.twin.model import Model
-from matstd.twin.record.body import StatedBody, with_body
+from matstd.twin.record import StatedBody, with_body
 
 ALPHA = 10.5e-6
 STATED = f"# standard = {{ expansion_1_K = {ALPHA}, expansion_u_1_K = 1e-6"

@@ -5,14 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from matstd.diagnosis.evidence.effect_signatures import ResidualSpace
-from matstd.diagnosis.evidence.evidence import EffectSet
-from matstd.diagnosis.fit.identification import fit_run
+from matstd.diagnosis.evidence import EffectSet, ResidualSpace
+from matstd.diagnosis.fit import fit_run
 from matstd.diagnosis.policy import POLICY
-from matstd.diagnosis.residual.pattern_tests import PatternTests
-from matstd.diagnosis.residual.structure import Shape, find_structure
-from matstd.twin.library.ordinary import ordinary_model
-from matstd.twin.model.model import Model
+from matstd.diagnosis.residual import PatternTests, Shape, find_structure
+from matstd.twin.library import ordinary_model
+from matstd.twin.model import Model
 from matstd.twin.units import UM
 
 KEY = (1, "hmc1995")

@@ -6,15 +6,13 @@ import numpy as np
 import pytest
 from scipy.stats import multivariate_t
 
-from matstd.diagnosis.fit.identification import fit_run
-from matstd.diagnosis.fit.prior import Prior
+from matstd.diagnosis.fit import Prior, fit_run
 from matstd.diagnosis.fit.suited_prior import _evidence, _released
-from matstd.diagnosis.geometry.learnt import geometry_rows
-from matstd.diagnosis.regression.noise import PRIOR_DOF
-from matstd.twin.library.ordinary import ordinary_model
-from matstd.twin.machine.chain import Axis, make_chain
-from matstd.twin.record.run import Run
-from matstd.twin.record.touches import Setup, Touches
+from matstd.diagnosis.geometry import geometry_rows
+from matstd.diagnosis.regression import PRIOR_DOF
+from matstd.twin.library import ordinary_model
+from matstd.twin.machine import Axis, make_chain
+from matstd.twin.record import Run, Setup, Touches
 from matstd.twin.units import UM, URAD
 
 NOISE = 3.0 * UM

@@ -4,9 +4,7 @@ import numpy as np
 import pytest
 from scipy.stats import norm
 
-from matstd.diagnosis.task.decision import guarded
-from matstd.diagnosis.task.uncertainty import task_uncertainty
-from matstd.diagnosis.task.visits import Visits
+from matstd.diagnosis.task import Visits, guarded, task_uncertainty
 
 
 def test_one_place_is_students_interval_of_the_next_visit() -> None:

@@ -14,9 +14,8 @@ from matstd.diagnosis.accuracy import (
     promise,
     repeatability,
 )
-from matstd.diagnosis.answer import diagnose
+from matstd.diagnosis.answer import Step, diagnose
 from matstd.diagnosis.answer.parts import verdict_parts
-from matstd.diagnosis.answer.steps import Step
 from matstd.diagnosis.fit import Reported, Role, fit_run
 from matstd.diagnosis.geometry import LearntGeometry
 from matstd.diagnosis.residual import Shape, Structure

@@ -5,12 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from matstd.diagnosis.evidence.effect_signatures import ResidualSpace
-from matstd.diagnosis.evidence.evidence import EffectSet
-from matstd.diagnosis.fit.identification import fit_run
+from matstd.diagnosis.evidence import EffectSet, ResidualSpace
+from matstd.diagnosis.fit import fit_run
 from matstd.diagnosis.residual.patterns import thinned
 from matstd.diagnosis.residual.waves import best_wave
-from matstd.twin.library.ordinary import ordinary_model
+from matstd.twin.library import ordinary_model
 from matstd.twin.units import UM
 
 KEY = (1, "hmc1995")

@@ -9,20 +9,16 @@ from pathlib import Path
 
 import numpy as np
 
-from matstd.artefact.body.datum import DatumSphere
-from matstd.artefact.body.freeform import FreeformPatch, graph_patch
+from matstd.artefact.body import Base, DatumSphere, FreeformPatch, Standard, graph_patch
 from matstd.artefact.body.material import STEEL
-from matstd.artefact.body.standard import Base, Standard
-from matstd.artefact.reach.touchable import Requests
-from matstd.artefact.tool.probe import Probe
-from matstd.probe_paths.emit.program import ProgramSet, make_programs
-from matstd.probe_paths.emit.writer import Feeds
-from matstd.probe_paths.language.dialect_file import read_dialect
-from matstd.probe_paths.plan.planner import plan_touches
-from matstd.probe_paths.plan.touch_plan import PlanOptions, TouchPlan, requests_at
+from matstd.artefact.reach import Requests
+from matstd.artefact.tool import Probe
+from matstd.probe_paths.emit import Feeds, ProgramSet, make_programs
+from matstd.probe_paths.language import read_dialect
+from matstd.probe_paths.plan import PlanOptions, TouchPlan, plan_touches, requests_at
 from matstd.twin.frames import pose, rotation
-from matstd.twin.machine.chain import Axis, Chain, make_chain
-from matstd.twin.record.touches import Setup
+from matstd.twin.machine import Axis, Chain, make_chain
+from matstd.twin.record import Setup
 from matstd.twin.units import DEG
 
 FOLDER = Path(__file__).parent / "programs"

@@ -6,24 +6,27 @@ import numpy as np
 import pytest
 
 from matstd.console import say
-from matstd.diagnosis.answer.run_diagnosis import diagnose
-from matstd.diagnosis.fit.identification import fit_run
-from matstd.diagnosis.geometry.learnt import geometry_rows
+from matstd.diagnosis.answer import diagnose
+from matstd.diagnosis.fit import fit_run
+from matstd.diagnosis.geometry import geometry_rows
 from matstd.diagnosis.remarks import HarmonicsAlike, remarks
-from matstd.diagnosis.residual.partial_residuals import partial
-from matstd.importers.files.machine_draft import machine_text
-from matstd.importers.instruments.axis_run import one_axis_machine, positioning_run
-from matstd.importers.instruments.positioning import PositioningTest, read_positioning
-from matstd.importers.sheets import read_sheet
+from matstd.diagnosis.residual import partial
+from matstd.importers import (
+    machine_text,
+    one_axis_machine,
+    positioning_run,
+    read_positioning,
+    read_sheet,
+)
+from matstd.importers.instruments import PositioningTest
 from matstd.report.words import remark_sentence, verdict_sentence
 from matstd.twin.effects.periodic import Harmonic
-from matstd.twin.files.run_file import read_run
+from matstd.twin.files import read_run
 from matstd.twin.files.run_writer import run_text
-from matstd.twin.library.catalogue import parse_effect
-from matstd.twin.library.ordinary import ordinary_model
-from matstd.twin.machine.chain import Axis, make_chain
-from matstd.twin.model.model import Model
-from matstd.twin.record.instrument import Instrument
+from matstd.twin.library import ordinary_model, parse_effect
+from matstd.twin.machine import Axis, make_chain
+from matstd.twin.model import Model
+from matstd.twin.record import Instrument
 from matstd.twin.units import DEG, UM, URAD
 from matstd.twin.words import deviations_in
 

@@ -6,16 +6,14 @@ import numpy as np
 import pytest
 
 from matstd.cli import main
-from matstd.diagnosis.fit.identification import fit_run
+from matstd.diagnosis.fit import fit_run
+from matstd.importers import read_sheet
 from matstd.importers.arms import arm_from_dh, read_arm, tracker_run
-from matstd.importers.sheets import read_sheet
 from matstd.twin.errors import BadFile, DesignError, NotEnoughData
-from matstd.twin.files.machine_file import read_machine
-from matstd.twin.files.run_file import read_run
-from matstd.twin.files.run_writer import write_run
+from matstd.twin.files import read_machine, read_run, write_run
 from matstd.twin.frames import apply
-from matstd.twin.library.ordinary import ordinary_model
-from matstd.twin.machine.kinematics import table_to_tool
+from matstd.twin.library import ordinary_model
+from matstd.twin.machine import table_to_tool
 from matstd.twin.units import DEG, NM, UM
 
 BAD = 2

@@ -6,14 +6,13 @@ from foreign_cases import DH
 from scipy.spatial.transform import Rotation
 
 from matstd.cli import main
-from matstd.importers.arms import arm_from_dh, import_arm, read_arm, tracker_run
+from matstd.importers import import_arm, read_sheet
+from matstd.importers.arms import arm_from_dh, read_arm, tracker_run
 from matstd.importers.arms.orientation import disagreement, from_quaternions, target_rotation
-from matstd.importers.sheets import read_sheet
 from matstd.twin.errors import BadFile, DesignError
-from matstd.twin.files.machine_file import read_machine
-from matstd.twin.files.run_file import read_run
+from matstd.twin.files import read_machine, read_run
 from matstd.twin.frames import apply, rotation
-from matstd.twin.machine.kinematics import table_to_tool
+from matstd.twin.machine import table_to_tool
 from matstd.twin.units import DEG, UM, URAD
 
 BAD = 2

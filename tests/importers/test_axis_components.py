@@ -4,18 +4,15 @@ import numpy as np
 import pytest
 
 from matstd.cli import main
-from matstd.diagnosis.fit.identification import fit_run
-from matstd.diagnosis.geometry.learnt import geometry_rows
-from matstd.importers.instruments.axis_run import one_axis_machine, positioning_run
-from matstd.importers.instruments.positioning import read_positioning
-from matstd.importers.sheets import read_sheet
+from matstd.diagnosis.fit import fit_run
+from matstd.diagnosis.geometry import geometry_rows
+from matstd.importers import one_axis_machine, positioning_run, read_positioning, read_sheet
 from matstd.twin.effects import backlash
 from matstd.twin.effects.position_table import propose
 from matstd.twin.files import read_run
-from matstd.twin.library.catalogue import parse_effect
-from matstd.twin.library.ordinary import ordinary_model
-from matstd.twin.machine.chain import Axis, make_chain
-from matstd.twin.model.model import Model
+from matstd.twin.library import ordinary_model, parse_effect
+from matstd.twin.machine import Axis, make_chain
+from matstd.twin.model import Model
 from matstd.twin.units import UM, URAD
 
 POSITIONS = np.arange(0.0, 601.0, 50.0)

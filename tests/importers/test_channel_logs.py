@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from matstd.importers.sheets import read_sheet
+from matstd.importers import read_sheet
 
 
 def stamp(t: float) -> str:

@@ -4,14 +4,12 @@ import numpy as np
 import pytest
 
 from matstd.cli import main
-from matstd.diagnosis.answer.run_diagnosis import diagnose
-from matstd.importers.instruments.circle import circle_machine, circle_run, read_circle
-from matstd.importers.sheets import read_sheet
+from matstd.diagnosis.answer import diagnose
+from matstd.importers import circle_machine, circle_run, read_circle, read_sheet
 from matstd.twin.errors import BadFile, DesignError
-from matstd.twin.files.machine_file import read_machine
-from matstd.twin.files.run_file import read_run
-from matstd.twin.library.catalogue import parse_effect
-from matstd.twin.model.model import columns
+from matstd.twin.files import read_machine, read_run
+from matstd.twin.library import parse_effect
+from matstd.twin.model import columns
 from matstd.twin.units import DEG, UM, URAD
 
 RADIUS, FEED = 100.0, 2000.0

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from matstd.cli import main
-from matstd.importers.instruments.acceptance import positioning_figures
-from matstd.importers.instruments.positioning import read_positioning
-from matstd.importers.sheets import approaches, read_sheet
+from matstd.importers import read_positioning, read_sheet
+from matstd.importers.instruments import positioning_figures
+from matstd.importers.sheets import approaches
 from matstd.twin.errors import BadFile
 from matstd.twin.units import UM
 

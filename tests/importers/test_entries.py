@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from matstd.importers import import_arm, import_mapped, import_points, read_sheet
-from matstd.importers.instruments import component_range, read_positioning
+from matstd.importers import import_arm, import_mapped, import_points, read_positioning, read_sheet
+from matstd.importers.instruments import component_range
 from matstd.importers.sheets import timed_by_rows
 from matstd.twin.errors import BadFile, DesignError
 from matstd.twin.units import UM, URAD

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from matstd.importers import read_sheet
 from matstd.importers.points import read_points
-from matstd.importers.sheets import read_sheet
 from matstd.twin.errors import BadFile
 
 HEADS = {

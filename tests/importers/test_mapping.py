@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 
 from matstd.cli import main
-from matstd.importers.files.mapping_file import mapped_run
-from matstd.importers.sheets import read_sheet, seconds
+from matstd.importers import read_sheet
+from matstd.importers.files import mapped_run
+from matstd.importers.sheets import seconds
 from matstd.twin.errors import BadFile
-from matstd.twin.files.run_file import read_run
+from matstd.twin.files import read_run
 from matstd.twin.units import UM
 
 MACHINE = """format = "machine/1"

@@ -9,7 +9,7 @@ from matstd.importers.points import linear_machine, points_run
 from matstd.importers.points.other_frame import in_measured_frame, in_nominal_frame, measured_frames
 from matstd.importers.points.point_list import PointList
 from matstd.twin.errors import DesignError
-from matstd.twin.record.touches import computed_deviation
+from matstd.twin.record import computed_deviation
 from matstd.twin.units import UM
 
 TURN, AWAY = 2.3, np.array([512.0, -81.0, 33.0])

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from matstd.cli import main
+from matstd.importers import read_sheet
 from matstd.importers.points import read_points
-from matstd.importers.sheets import read_sheet
 from matstd.twin.errors import BadFile
-from matstd.twin.files.run_file import read_run
+from matstd.twin.files import read_run
 from matstd.twin.units import UM
 
 CHARACTERISTICS = """planid\tpartnb\tid\ttype\tidsymbol\tactual\tnominal\tuppertol\tdeviation

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from matstd.cli import main
-from matstd.importers.instruments.positioning import read_positioning
-from matstd.importers.sheets import most_read, read_sheet, read_tables
+from matstd.importers import read_positioning, read_sheet
+from matstd.importers.sheets import most_read, read_tables
 from matstd.twin.errors import BadFile
-from matstd.twin.files.run_file import read_run
+from matstd.twin.files import read_run
 from matstd.twin.units import UM
 
 BAD = 2

@@ -5,10 +5,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from matstd.importers import read_positioning, read_sheet
 from matstd.importers.arms import arm_from_dh
-from matstd.importers.instruments.positioning import read_positioning
 from matstd.importers.points import read_points
-from matstd.importers.sheets import read_sheet, seconds
+from matstd.importers.sheets import seconds
 from matstd.twin.errors import BadFile
 
 

@@ -8,21 +8,23 @@ import openpyxl
 import pytest
 
 from matstd.cli import main
-from matstd.diagnosis.answer.run_diagnosis import diagnose
-from matstd.diagnosis.fit.describe import Role
-from matstd.diagnosis.fit.identification import fit_run
+from matstd.diagnosis.answer import diagnose
+from matstd.diagnosis.fit import Role, fit_run
+from matstd.importers import (
+    one_axis_machine,
+    positioning_run,
+    read_circle,
+    read_positioning,
+    read_sheet,
+)
 from matstd.importers.arms import arm_from_dh
-from matstd.importers.instruments.axis_run import one_axis_machine, positioning_run
-from matstd.importers.instruments.circle import read_circle
-from matstd.importers.instruments.positioning import PositioningTest, read_positioning
+from matstd.importers.instruments import PositioningTest
 from matstd.importers.points import linear_machine, points_run, read_points
-from matstd.importers.sheets import bare, read_sheet, unit_of_column
+from matstd.importers.sheets import bare, unit_of_column
 from matstd.twin.errors import BadFile
-from matstd.twin.files.run_file import read_run
-from matstd.twin.library.catalogue import parse_effect
-from matstd.twin.library.ordinary import ordinary_model
-from matstd.twin.record.copies import without_copies
-from matstd.twin.record.touches import at_poses
+from matstd.twin.files import read_run
+from matstd.twin.library import ordinary_model, parse_effect
+from matstd.twin.record import at_poses, without_copies
 from matstd.twin.units import DEG, UM, URAD
 
 BAD = 2

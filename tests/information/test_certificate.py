@@ -6,12 +6,20 @@ import numpy as np
 import pytest
 from scipy.optimize import LinearConstraint, minimize
 
-from matstd.information.criteria.design_criterion import DesignCriterion
+from matstd.information.criteria import DesignCriterion
 from matstd.information.criteria.measures import Determinant, MeanVariance
-from matstd.information.selection.certificate import Certificate, rounded
-from matstd.information.selection.relaxation import _candidates_to_search, relaxed, slope
-from matstd.information.selection.shares import heaviest, largest_sum
-from matstd.information.selection.touch_selection import Quota, Selection, exchange, fill
+from matstd.information.selection import (
+    Certificate,
+    Quota,
+    Selection,
+    exchange,
+    fill,
+    heaviest,
+    relaxed,
+    rounded,
+)
+from matstd.information.selection.relaxation import _candidates_to_search, slope
+from matstd.information.selection.shares import largest_sum
 from matstd.twin.errors import DesignError
 
 ROUNDING = 1e-9

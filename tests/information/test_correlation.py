@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from matstd.information.identifiability.correlation import correlation, ties
-from matstd.report.identifiability.identifiability_words import pair_words
-from matstd.report.identifiability.parameter_words import short
-from matstd.report.maps.correlation_picture import draw_ties
+from matstd.information.identifiability import ties
+from matstd.information.identifiability.correlation import correlation
+from matstd.report.identifiability import pair_words, short
+from matstd.report.maps import draw_ties
 from matstd.twin.errors import ShapeMismatch
 
 NAMES = (

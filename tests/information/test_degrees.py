@@ -5,17 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from matstd.information.identifiability.degrees import (
-    MAX_DEGREE,
-    MAX_POSTERIOR_SHARE,
-    supported_degrees,
-)
+from matstd.information.identifiability import supported_degrees
+from matstd.information.identifiability.degrees import MAX_DEGREE, MAX_POSTERIOR_SHARE
 from matstd.report.identifiability.identifiability_words import degree_words
-from matstd.sensitivity.population.sampling import Population
-from matstd.twin.machine.chain import Axis, make_chain
-from matstd.twin.machine.symbols import Family
-from matstd.twin.model.model import Model
-from matstd.twin.record.touches import at_poses
+from matstd.sensitivity.population import Population
+from matstd.twin.machine import Axis, Family, make_chain
+from matstd.twin.model import Model
+from matstd.twin.record import at_poses
 from matstd.twin.units import UM
 
 HALF = 200.0  # mm, half a travel

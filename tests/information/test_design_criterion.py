@@ -5,7 +5,7 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from matstd.information.criteria.design_criterion import (
+from matstd.information.criteria import (
     DesignCriterion,
     five_criteria,
     mean_prediction,
@@ -18,10 +18,8 @@ from matstd.information.criteria.measures import (
     LargestVariance,
     MeanVariance,
 )
-from matstd.information.selection.certificate import rounded
-from matstd.information.selection.relaxation import relaxed
+from matstd.information.selection import Quota, Selection, exchange, fill, relaxed, rounded
 from matstd.information.selection.shares import keeps, largest_sum
-from matstd.information.selection.touch_selection import Quota, Selection, exchange, fill
 from matstd.twin.errors import DesignError
 
 ROUNDING = 1e-9

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from matstd.information.power.quadratic import exceedance, quantile
-from matstd.information.power.smooth_field import decorrelated, field_test, low_rank
+from matstd.information.power import decorrelated, exceedance, field_test, low_rank, quantile
 
 N, DRAWS = 60, 20_000
 

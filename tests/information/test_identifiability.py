@@ -3,17 +3,21 @@
 import numpy as np
 import pytest
 
-from matstd.information.identifiability.estimable_combinations import combinations
-from matstd.information.identifiability.freedoms import Reason, Resolution, in_families
-from matstd.information.identifiability.nullspace import rank_analysis, sparse
-from matstd.information.identifiability.separation import identifiability
-from matstd.report.identifiability.identifiability_words import family_words, freedom_words
-from matstd.sensitivity.first_order.workspace import Workspace, latin_hypercube
-from matstd.sensitivity.population.sampling import Population
-from matstd.twin.machine.chain import Axis, make_chain
-from matstd.twin.machine.kinematics import exact_tip, tip
-from matstd.twin.model.model import Model
-from matstd.twin.record.touches import at_poses
+from matstd.information.identifiability import (
+    Resolution,
+    combinations,
+    identifiability,
+    in_families,
+    rank_analysis,
+)
+from matstd.information.identifiability.freedoms import Reason
+from matstd.information.identifiability.nullspace import sparse
+from matstd.report.identifiability import family_words, freedom_words
+from matstd.sensitivity.first_order import Workspace, latin_hypercube
+from matstd.sensitivity.population import Population
+from matstd.twin.machine import Axis, exact_tip, make_chain, tip
+from matstd.twin.model import Model
+from matstd.twin.record import at_poses
 
 SHAPES = ("linear", "parabolic", "sine", "cosine")
 EACH_SHAPE = f"(in each shape: {', '.join(SHAPES)})"

@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from matstd.information.criteria.posterior import Posterior, prior_sd_of_tip, whitened
-from matstd.information.identifiability.separation import identifiability
-from matstd.sensitivity.first_order.workspace import latin_hypercube
-from matstd.sensitivity.population.sampling import Population
+from matstd.information.criteria import Posterior, prior_sd_of_tip, whitened
+from matstd.information.identifiability import identifiability
+from matstd.sensitivity.first_order import latin_hypercube
+from matstd.sensitivity.population import Population
 from matstd.twin.errors import ShapeMismatch
-from matstd.twin.machine.kinematics import table_to_tool, tip
-from matstd.twin.record.touches import Setup, Touches, at_poses
+from matstd.twin.machine import table_to_tool, tip
+from matstd.twin.record import Setup, Touches, at_poses
 
 LENGTH = 160.0
 NOISE = 1e-3  # mm

@@ -9,15 +9,13 @@ its own ordinary model: several set-ups, linear, parabolic and sinusoidal errors
 import numpy as np
 import pytest
 
-from matstd.information.identifiability.nullspace import rank_analysis
-from matstd.sensitivity.first_order.workspace import Workspace, latin_hypercube
-from matstd.sensitivity.population.sampling import Population
-from matstd.twin.effects.geometric import ComponentError, HigherOrder
-from matstd.twin.effects.location import LocationError
-from matstd.twin.machine.chain import Axis, make_chain
-from matstd.twin.machine.symbols import Family
-from matstd.twin.model.model import Model
-from matstd.twin.record.touches import at_poses
+from matstd.information.identifiability import rank_analysis
+from matstd.sensitivity.first_order import Workspace, latin_hypercube
+from matstd.sensitivity.population import Population
+from matstd.twin.effects import ComponentError, HigherOrder, LocationError
+from matstd.twin.machine import Axis, Family, make_chain
+from matstd.twin.model import Model
+from matstd.twin.record import at_poses
 from matstd.twin.units import DEG
 
 RANKS = {

@@ -5,10 +5,9 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from matstd.information.criteria.design_criterion import DesignCriterion, mean_prediction
+from matstd.information.criteria import DesignCriterion, mean_prediction
 from matstd.information.criteria.measures import MeanVariance
-from matstd.information.selection.groups import best_groups
-from matstd.information.selection.touch_selection import Quota, Selection, exchange, fill
+from matstd.information.selection import Quota, Selection, best_groups, exchange, fill
 from matstd.twin.errors import DesignError
 
 ROUNDING = 1e-9

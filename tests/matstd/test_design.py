@@ -14,28 +14,21 @@ import rs274
 from browser import faults, opened, requests
 from figures import render_alone
 
-from matstd.artefact.body.limits import Limits
-from matstd.artefact.body.standard_file import read_standard
-from matstd.artefact.brief import project_file
-from matstd.artefact.brief.brief import Brief, PlacementOptions
-from matstd.artefact.brief.project_file import read_project
+from matstd.artefact.body import Limits, read_standard
+from matstd.artefact.brief import Brief, PlacementOptions, project_file, read_project
 from matstd.artefact.compare import comparison
-from matstd.artefact.worth import ball_choice
-from matstd.artefact.worth.touch_choice import TouchOptions
-from matstd.artefact.worth.touch_criterion import CRITERIA, CriterionOptions
-from matstd.artefact.worth.touch_curves import touch_curve
+from matstd.artefact.worth import CriterionOptions, TouchOptions, ball_choice, touch_curve
+from matstd.artefact.worth.touch_criterion import CRITERIA
 from matstd.cad_out.verify.conformity import FACE_LIMIT
 from matstd.cli import main
-from matstd.probe_paths.control.interpreter import read_program
-from matstd.probe_paths.emit.program import make_programs
-from matstd.probe_paths.language.dialect_file import read_dialect
-from matstd.probe_paths.linuxcnc.replanned import shortened
+from matstd.probe_paths.control import read_program
+from matstd.probe_paths.emit import make_programs
+from matstd.probe_paths.language import read_dialect
+from matstd.probe_paths.linuxcnc import shortened
 from matstd.report.pages import design_page
 from matstd.stages import study_run
 from matstd.twin.errors import BadFile
-from matstd.twin.files.error_file import read_errors
-from matstd.twin.files.machine_file import read_machine
-from matstd.twin.files.run_file import read_run
+from matstd.twin.files import read_errors, read_machine, read_run
 from matstd.twin.frames import apply, inverse
 from matstd.twin.machine import exact_tip, tip
 from matstd.twin.model import contribution

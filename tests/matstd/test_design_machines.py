@@ -6,17 +6,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from matstd.artefact.body.limits import check
-from matstd.artefact.brief.brief import Brief
-from matstd.artefact.brief.project_file import read_project
+from matstd.artefact.body import check
+from matstd.artefact.brief import Brief, read_project
 from matstd.artefact.compare import comparison
 from matstd.artefact.feasibility.within_travels import travels
-from matstd.artefact.place.placement import design_standard
-from matstd.artefact.worth import ball_choice
-from matstd.artefact.worth.touch_choice import TouchOptions
-from matstd.probe_paths.campaign.order_study import orders
-from matstd.probe_paths.emit.program import make_programs
-from matstd.report.plots.plan_pictures import draw_order
+from matstd.artefact.place import design_standard
+from matstd.artefact.worth import TouchOptions, ball_choice
+from matstd.probe_paths.campaign import orders
+from matstd.probe_paths.emit import make_programs
+from matstd.report.plots import draw_order
 from matstd.report.style import save
 from matstd.stages import design
 

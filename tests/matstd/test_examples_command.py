@@ -6,7 +6,7 @@ import pytest
 
 from matstd.cli import main
 from matstd.commands.machine.examples import EXAMPLES
-from matstd.twin.files.run_file import read_run
+from matstd.twin.files import read_run
 
 
 def test_the_list_names_every_example(capsys):

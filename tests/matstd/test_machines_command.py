@@ -8,10 +8,9 @@ import pytest
 from matstd.api.machines import machine_names
 from matstd.cli import main
 from matstd.commands.machine.machines import text
-from matstd.twin.files.error_file import read_errors
-from matstd.twin.files.machine_file import read_machine
-from matstd.twin.model.model import Model
-from matstd.twin.record.touches import at_poses
+from matstd.twin.files import read_errors, read_machine
+from matstd.twin.model import Model
+from matstd.twin.record import at_poses
 from matstd.twin.units import UM
 
 

@@ -16,8 +16,8 @@ from run_text import every
 from simulator_case import simulate_case
 
 from matstd.cli import main
-from matstd.diagnosis.files.model_file import read_model
-from matstd.twin.files.run_file import read_run
+from matstd.diagnosis.files import read_model
+from matstd.twin.files import read_run
 from matstd.twin.units import UM
 
 BAD = 2

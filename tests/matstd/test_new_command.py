@@ -5,17 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from matstd.artefact.brief.project_file import read_project
+from matstd.artefact.brief import read_project
 from matstd.artefact.feasibility import check_seat, feasibility
-from matstd.artefact.reach.touchable import ProbeReach
-from matstd.artefact.worth.touch_criterion import random_touches
+from matstd.artefact.reach import ProbeReach
+from matstd.artefact.worth import random_touches
 from matstd.cli import main
 from matstd.commands.machine.new import MACHINES, TEMPLATES, template
 from matstd.stages.proposal import Proposal, workspace
-from matstd.twin.files.machine_file import read_machine
-from matstd.twin.files.run_file import read_run
-from matstd.twin.library.catalogue import load_user_effects, parse_effect
-from matstd.twin.library.trial import try_effect
+from matstd.twin.files import read_machine, read_run
+from matstd.twin.library import load_user_effects, parse_effect, try_effect
 from matstd.twin.machine import Axis, make_chain, table_to_tool
 from matstd.twin.units import UM
 

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from matstd.artefact.brief.project_file import read_project
-from matstd.artefact.tool.probe import Probe
+from matstd.artefact.brief import read_project
+from matstd.artefact.tool import Probe
 from matstd.twin.errors import BadFile
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "hsm600u.toml"

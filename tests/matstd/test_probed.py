@@ -7,10 +7,10 @@ from demo import demo_standard
 from made_up import made_up
 
 from matstd.api.standards import probed_body
-from matstd.artefact.body.standard_file import write_standard
+from matstd.artefact.body import write_standard
 from matstd.report.machine.meshes import MAX_TRIANGLES
 from matstd.twin.errors import BadFile, DesignError
-from matstd.twin.record.run import Run
+from matstd.twin.record import Run
 
 
 def run_of(stamp):

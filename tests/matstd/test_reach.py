@@ -7,16 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from matstd.artefact.brief.brief import Brief
-from matstd.artefact.brief.project_file import read_project
-from matstd.artefact.feasibility import side_by_side
-from matstd.artefact.feasibility.feasible import feasibility
-from matstd.artefact.feasibility.room import check_room, room_for
-from matstd.artefact.feasibility.standing import check_seat
+from matstd.artefact.brief import Brief, read_project
+from matstd.artefact.feasibility import check_room, check_seat, feasibility, side_by_side
+from matstd.artefact.feasibility.room import room_for
 from matstd.artefact.feasibility.within_travels import _to_rise, travels
-from matstd.artefact.reach.face_of_table import standing_remarks, table_face
-from matstd.artefact.reach.touchable import Requests
-from matstd.artefact.reach.within_reach import ANGLE, places_on, reach_of
+from matstd.artefact.reach import ANGLE, Requests, places_on, reach_of, standing_remarks, table_face
 from matstd.cli import main
 from matstd.stages.refusals import REFUSED_REACH, REFUSED_ROOM, refusals
 from matstd.twin.errors import BadFile, NotBuildable, NotReachable

@@ -12,10 +12,9 @@ import trimesh
 
 from matstd.artefact.brief import Brief, base_of, read_project
 from matstd.artefact.brief.workshop_tables import BodyTable, TableTable
-from matstd.artefact.feasibility import feasibility
-from matstd.artefact.feasibility.standing import check_beside, check_seat
+from matstd.artefact.feasibility import check_beside, check_seat, feasibility
 from matstd.artefact.reach import DatumBall
-from matstd.cad_out.meshes.mesh import read_stl
+from matstd.cad_out.meshes import read_stl
 from matstd.cli import main
 from matstd.twin.errors import BadFile, NotReachable
 from matstd.twin.frames import pose, rotation

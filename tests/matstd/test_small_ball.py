@@ -6,12 +6,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from matstd.artefact.body.datum import DatumSphere
-from matstd.artefact.body.standard import Standard
-from matstd.artefact.brief.project_file import read_project
-from matstd.artefact.worth.touch_choice import each_at, sphere_grid
-from matstd.probe_paths.plan.planner import plan_touches
-from matstd.probe_paths.stations.from_brief import plan_options_of
+from matstd.artefact.body import DatumSphere, Standard
+from matstd.artefact.brief import read_project
+from matstd.artefact.worth import each_at, sphere_grid
+from matstd.probe_paths.plan import plan_touches
+from matstd.probe_paths.stations import plan_options_of
 
 PROJECT = Path(__file__).parents[2] / "examples" / "machines" / "vertical.toml"
 

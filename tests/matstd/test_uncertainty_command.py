@@ -9,19 +9,16 @@ import make_programs as golden
 import numpy as np
 import pytest
 
-from matstd.artefact.body.known import Known
-from matstd.artefact.body.standard import Standard
-from matstd.artefact.body.standard_file import read_standard, write_standard
-from matstd.artefact.brief.task_file import Task
-from matstd.artefact.certify.task_places import curvature, like_task
+from matstd.artefact.body import Known, Standard, read_standard, write_standard
+from matstd.artefact.brief import Task
+from matstd.artefact.certify import like_task
+from matstd.artefact.certify.task_places import curvature
 from matstd.cli import main
 from matstd.diagnosis.files import model_text
 from matstd.diagnosis.fit import fit_run
-from matstd.probe_paths.campaign.contact_solver import VirtualMachine
-from matstd.probe_paths.campaign.simulation import visits
+from matstd.probe_paths.campaign import VirtualMachine, visits
 from matstd.twin.errors import DesignError
-from matstd.twin.files.run_file import read_run
-from matstd.twin.files.run_writer import write_run
+from matstd.twin.files import read_run, write_run
 from matstd.twin.frames import pose, rotation
 from matstd.twin.library import parse_effect
 from matstd.twin.machine import Contribution

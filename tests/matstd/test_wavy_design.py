@@ -6,11 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from matstd.artefact.body.limits import max_slope
-from matstd.artefact.body.standard_file import read_standard
-from matstd.artefact.brief.project_file import read_project
+from matstd.artefact.body import max_slope, read_standard
+from matstd.artefact.brief import read_project
 from matstd.cli import main
-from matstd.twin.files.run_file import read_run
+from matstd.twin.files import read_run
 from matstd.twin.units import DEG
 
 PROJECT = Path(__file__).parents[2] / "examples" / "wavy_face.toml"

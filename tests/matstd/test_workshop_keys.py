@@ -8,21 +8,25 @@ import pytest
 import trimesh
 from formats import write_examples
 
-from matstd.artefact.body.datum import DatumSphere
+from matstd.artefact.body import Base, DatumSphere, Standard
 from matstd.artefact.body.material import STEEL
-from matstd.artefact.body.standard import Base, Standard
-from matstd.artefact.brief.project_file import read_project
-from matstd.artefact.brief.workshop_tables import probe_models
-from matstd.artefact.feasibility.standing import check_seat
-from matstd.artefact.reach import mesh_cover
-from matstd.artefact.reach.mesh_cover import MOST_BOXES, read_drawn_body
-from matstd.artefact.reach.touchable import ProbeReach, Requests
-from matstd.artefact.reach.workshop import Solid, Workshop, still_frames
-from matstd.probe_paths.stations.from_brief import dialects_of, feeds_of, plan_options_of
+from matstd.artefact.brief import probe_models, read_project
+from matstd.artefact.feasibility import check_seat
+from matstd.artefact.reach import (
+    ProbeReach,
+    Requests,
+    Solid,
+    Workshop,
+    mesh_cover,
+    read_drawn_body,
+    still_frames,
+)
+from matstd.artefact.reach.mesh_cover import MOST_BOXES
+from matstd.probe_paths.stations import dialects_of, feeds_of, plan_options_of
 from matstd.twin.errors import BadFile
 from matstd.twin.frames import apply, inverse, pose, rotation
-from matstd.twin.machine.kinematics import table_to_tool
-from matstd.twin.record.touches import Setup
+from matstd.twin.machine import table_to_tool
+from matstd.twin.record import Setup
 from matstd.twin.units import DEG
 
 EXAMPLES = Path(__file__).parents[2] / "examples"

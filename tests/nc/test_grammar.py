@@ -5,11 +5,19 @@ from pathlib import Path
 
 import pytest
 
-from matstd.nc.grammar.blocks import NUMBER, gcode_lines, klartext_blocks, split_words
-from matstd.nc.grammar.flow import MAX_DEPTH, Flow, label_places
+from matstd.nc.grammar import (
+    MAX_DEPTH,
+    MODAL,
+    NUMBER,
+    Flow,
+    Modal,
+    gcode_lines,
+    klartext_blocks,
+    label_places,
+    run_order,
+    split_words,
+)
 from matstd.nc.grammar.formulas import Formula, function_value
-from matstd.nc.grammar.modal import MODAL, Modal
-from matstd.nc.grammar.order import run_order
 from matstd.probe_paths.language.gcode import MODES
 from matstd.twin.errors import BadFile
 

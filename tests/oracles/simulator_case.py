@@ -15,11 +15,9 @@ from simulator import probe, run_text
 from simulator_draw import random_direction, random_wave
 from simulator_experiment import MACHINES, STATED_NOISE, random_experiment, random_noise
 
-from matstd.twin.files.run_file import read_run
-from matstd.twin.library.catalogue import proposals
-from matstd.twin.library.ordinary import ordinary_model
-from matstd.twin.model import is_tunable
-from matstd.twin.model.model import columns
+from matstd.twin.files import read_run
+from matstd.twin.library import ordinary_model, proposals
+from matstd.twin.model import columns, is_tunable
 
 DETECTABLE = 9.0
 ALIKE = 0.93

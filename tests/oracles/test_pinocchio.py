@@ -12,11 +12,17 @@ import pytest
 from made_up import ARM, arm_poses
 
 from matstd.twin.effects.joint_sag import KIND
-from matstd.twin.machine.chain import Axis, Chain, make_chain
-from matstd.twin.machine.contribution import Contribution
-from matstd.twin.machine.kinematics import exact_tip, reach, table_to_tool
-from matstd.twin.machine.link import Link
-from matstd.twin.model.effect import contribution
+from matstd.twin.machine import (
+    Axis,
+    Chain,
+    Contribution,
+    Link,
+    exact_tip,
+    make_chain,
+    reach,
+    table_to_tool,
+)
+from matstd.twin.model import contribution
 from matstd.twin.units import DEG, NM
 
 LENGTH = 160.0

@@ -13,13 +13,11 @@ from simulator_experiment import MACHINES, random_experiment
 from simulator_machine import read_machine, tip
 from simulator_surface import foot, random_pads, surface_point
 
-from matstd.twin.files.machine_file import read_machine as read_chain
-from matstd.twin.library.catalogue import parse_effect
-from matstd.twin.machine.contribution import Contribution
-from matstd.twin.machine.kinematics import exact_tip
-from matstd.twin.machine.kinematics import tip as twin_tip
-from matstd.twin.machine.symbols import Family
-from matstd.twin.model.model import columns
+from matstd.twin.files import read_machine as read_chain
+from matstd.twin.library import parse_effect
+from matstd.twin.machine import Contribution, Family, exact_tip
+from matstd.twin.machine import tip as twin_tip
+from matstd.twin.model import columns
 from matstd.twin.units import NM, UM, URAD
 
 VOLUMETRIC = 0.02 * UM

@@ -4,11 +4,10 @@ from pathlib import Path
 
 import pytest
 
-from matstd.probe_paths.campaign.contact_solver import VirtualMachine
-from matstd.probe_paths.control.interpreter import interpret
-from matstd.probe_paths.control.steps import ReadProgram
-from matstd.probe_paths.emit.program import ProgramSet
-from matstd.probe_paths.plan.touch_plan import TouchPlan
+from matstd.probe_paths.campaign import VirtualMachine
+from matstd.probe_paths.control import ReadProgram, interpret
+from matstd.probe_paths.emit import ProgramSet
+from matstd.probe_paths.plan import TouchPlan
 
 GOLDEN = Path(__file__).parents[1] / "golden"
 

@@ -8,17 +8,14 @@ import numpy as np
 import pytest
 
 from matstd.artefact.body import write_standard
-from matstd.artefact.tool.heights import home_readings
+from matstd.artefact.tool import home_readings
 from matstd.cli import main
-from matstd.probe_paths.campaign.ball_change import ball_changes, check_changes
-from matstd.probe_paths.campaign.collisions import check_moves
-from matstd.probe_paths.campaign.contact_solver import VirtualMachine
+from matstd.probe_paths.campaign import VirtualMachine, ball_changes, check_changes, check_moves
 from matstd.probe_paths.campaign.virtual_run import run_programs
-from matstd.probe_paths.control.interpreter import interpret
-from matstd.probe_paths.control.log import read_log
-from matstd.probe_paths.emit.program import make_ball
+from matstd.probe_paths.control import interpret, read_log
+from matstd.probe_paths.emit import make_ball
 from matstd.probe_paths.locate.beside import plan_ball
-from matstd.report.words.probe_words import ball_lines
+from matstd.report.words import ball_lines
 from matstd.twin.errors import BadFile, DesignError, NotReachable
 from matstd.twin.frames import pose
 from matstd.twin.units import NM, UM

@@ -2,8 +2,7 @@
 
 import numpy as np
 
-from matstd.probe_paths.control.clock import Clock, step_times
-from matstd.probe_paths.control.steps import Move, ProbeStep
+from matstd.probe_paths.control import Clock, Move, ProbeStep, step_times
 
 CLOCK = Clock()
 """300 mm/s and 1 rad/s, 3000 mm/s^2 and 5 rad/s^2, 0.05 s a move and 0.8 s a cycle, as by hand."""

@@ -7,19 +7,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from matstd.artefact.reach.workshop import Workshop
-from matstd.artefact.tool.probe import Probe
-from matstd.probe_paths.campaign.collisions import SMALLEST_GAP, check_moves
-from matstd.probe_paths.campaign.evaluation import evaluate
+from matstd.artefact.reach import Workshop
+from matstd.artefact.tool import Probe
+from matstd.probe_paths.campaign import check_moves, evaluate
+from matstd.probe_paths.campaign.collisions import SMALLEST_GAP
 from matstd.probe_paths.campaign.virtual_run import run_programs
-from matstd.probe_paths.control.interpreter import interpret
-from matstd.probe_paths.control.log import read_log
-from matstd.probe_paths.control.steps import Move
-from matstd.probe_paths.plan.clearance import Stage, ToolClearance
+from matstd.probe_paths.control import Move, interpret, read_log
+from matstd.probe_paths.plan import ToolClearance
+from matstd.probe_paths.plan.clearance import Stage
 from matstd.twin.errors import BadFile
 from matstd.twin.frames import apply, inverse
-from matstd.twin.machine.kinematics import tip
-from matstd.twin.record.touches import Setup
+from matstd.twin.machine import tip
+from matstd.twin.record import Setup
 from matstd.twin.units import UM
 
 HAND = 0.02

@@ -6,15 +6,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from matstd.probe_paths.campaign.contact_points import at_true_contacts, foot_points
-from matstd.probe_paths.campaign.contact_solver import VirtualMachine
-from matstd.probe_paths.campaign.simulation import simulate
-from matstd.sensitivity.population.sampling import Population, drawn_errors
+from matstd.probe_paths.campaign import VirtualMachine, foot_points, simulate
+from matstd.probe_paths.campaign.contact_points import at_true_contacts
+from matstd.sensitivity.population import Population, drawn_errors
 from matstd.twin.frames import Array, apply, inverse
-from matstd.twin.machine.kinematics import exact_tip
-from matstd.twin.model.effect import contribution
-from matstd.twin.record.run import Run
-from matstd.twin.record.touches import computed_deviation
+from matstd.twin.machine import exact_tip
+from matstd.twin.model import contribution
+from matstd.twin.record import Run, computed_deviation
 from matstd.twin.units import UM
 
 NOISE = 1.0 * UM

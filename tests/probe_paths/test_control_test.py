@@ -7,15 +7,14 @@ import shutil
 import numpy as np
 import pytest
 
-from matstd.artefact.body.standard_file import write_standard
-from matstd.artefact.tool.probe import Probe
+from matstd.artefact.body import write_standard
+from matstd.artefact.tool import Probe
 from matstd.cli import main
-from matstd.probe_paths.campaign.evaluation import evaluate
-from matstd.probe_paths.control.log import read_log
-from matstd.probe_paths.emit.program import make_programs
+from matstd.probe_paths.campaign import evaluate
+from matstd.probe_paths.control import read_log
+from matstd.probe_paths.emit import make_programs
 from matstd.probe_paths.linuxcnc import session as session_module
-from matstd.probe_paths.plan.planner import plan_touches
-from matstd.probe_paths.plan.touch_plan import PlanOptions
+from matstd.probe_paths.plan import PlanOptions, plan_touches
 from matstd.twin.units import UM
 
 LINUXCNC = shutil.which("linuxcnc")

@@ -7,21 +7,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from matstd.artefact.brief.project_file import read_project
-from matstd.artefact.reach.datum_ball import DatumBall
-from matstd.artefact.reach.workshop import Workshop
-from matstd.probe_paths.campaign.ball_change import ball_changes, effective_radii
-from matstd.probe_paths.campaign.collisions import check_moves
-from matstd.probe_paths.campaign.contact_solver import VirtualMachine
+from matstd.artefact.brief import read_project
+from matstd.artefact.reach import DatumBall, Workshop
+from matstd.probe_paths.campaign import VirtualMachine, ball_changes, check_moves, effective_radii
 from matstd.probe_paths.campaign.virtual_run import run_programs
-from matstd.probe_paths.control.interpreter import interpret
-from matstd.probe_paths.control.log import read_log
-from matstd.probe_paths.control.steps import Move
-from matstd.probe_paths.emit.program import make_ball, make_programs
-from matstd.probe_paths.linuxcnc.replanned import shortened
+from matstd.probe_paths.control import Move, interpret, read_log
+from matstd.probe_paths.emit import make_ball, make_programs
+from matstd.probe_paths.linuxcnc import shortened
+from matstd.probe_paths.locate import planned_again
 from matstd.probe_paths.locate.beside import plan_ball
-from matstd.probe_paths.locate.planned_visit import planned_again
-from matstd.report.words.probe_words import ball_lines
+from matstd.report.words import ball_lines
 from matstd.twin.errors import BadFile, DesignError
 from matstd.twin.frames import pose, rotation
 from matstd.twin.units import NM, UM

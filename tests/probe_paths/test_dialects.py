@@ -7,11 +7,10 @@ import pytest
 from formats import examples
 
 from matstd.cli import main
-from matstd.probe_paths.control.interpreter import interpret
-from matstd.probe_paths.emit.program import make_programs
-from matstd.probe_paths.emit.writer import Feeds
-from matstd.probe_paths.language.dialect import Dialect
-from matstd.probe_paths.language.dialect_file import known_controls, read_dialect
+from matstd.probe_paths.control import interpret
+from matstd.probe_paths.emit import Feeds, make_programs
+from matstd.probe_paths.language import Dialect, read_dialect
+from matstd.probe_paths.language.dialect_file import known_controls
 from matstd.twin.errors import BadFile, DesignError
 
 ROOT = Path(__file__).parents[2]

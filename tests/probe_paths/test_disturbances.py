@@ -5,16 +5,16 @@ from datetime import datetime, timedelta
 import numpy as np
 import pytest
 
-from matstd.probe_paths.campaign.contact_solver import VirtualMachine
-from matstd.probe_paths.campaign.disturbances import effects_over_record, joined_touches
+from matstd.probe_paths.campaign import VirtualMachine, effects_over_record
+from matstd.probe_paths.campaign.disturbances import joined_touches
 from matstd.probe_paths.campaign.virtual_run import run_programs
 from matstd.twin.effects.artefact import ArtefactSlip
 from matstd.twin.effects.backlash import Backlash
 from matstd.twin.errors import BadFile, UnknownEffect
-from matstd.twin.files.sensor_file import read_sensors
-from matstd.twin.library.catalogue import parse_effect
-from matstd.twin.machine.contribution import Contribution
-from matstd.twin.record.touches import Setup, at_poses
+from matstd.twin.files import read_sensors
+from matstd.twin.library import parse_effect
+from matstd.twin.machine import Contribution
+from matstd.twin.record import Setup, at_poses
 from matstd.twin.units import MINUTE, UM, URAD
 
 BEGIN = datetime(2031, 5, 6, 7, 0, 0)

@@ -9,15 +9,11 @@ import pytest
 
 from matstd.artefact.body import write_standard
 from matstd.cli import main
-from matstd.probe_paths.campaign.ball_change import read_heights
-from matstd.probe_paths.campaign.collisions import check_moves
-from matstd.probe_paths.campaign.contact_solver import VirtualMachine
+from matstd.probe_paths.campaign import VirtualMachine, check_moves, read_heights
 from matstd.probe_paths.campaign.virtual_run import run_programs
-from matstd.probe_paths.control.interpreter import interpret
-from matstd.probe_paths.control.log import read_log
-from matstd.probe_paths.control.steps import ProbeStep
-from matstd.probe_paths.emit.program import make_first
-from matstd.probe_paths.language.dialect_file import read_dialect
+from matstd.probe_paths.control import ProbeStep, interpret, read_log
+from matstd.probe_paths.emit import make_first
+from matstd.probe_paths.language import read_dialect
 from matstd.probe_paths.locate.beside import plan_ball
 from matstd.twin.errors import BadFile, DesignError, NotReachable
 from matstd.twin.frames import pose

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from matstd.artefact.tool.probe import Probe
-from matstd.probe_paths.plan.frame import ProgramFrame
+from matstd.artefact.tool import Probe
+from matstd.probe_paths.plan import ProgramFrame
 from matstd.twin.units import DEG
 
 ROUNDING = 1e-12

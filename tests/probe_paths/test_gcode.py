@@ -8,18 +8,12 @@ import numpy as np
 import pytest
 import rs274
 
-from matstd.probe_paths.campaign.collisions import check_moves
-from matstd.probe_paths.campaign.contact_solver import VirtualMachine
-from matstd.probe_paths.campaign.evaluation import evaluate
+from matstd.probe_paths.campaign import VirtualMachine, check_moves, evaluate
 from matstd.probe_paths.campaign.virtual_run import run_programs
-from matstd.probe_paths.control.interpreter import interpret
-from matstd.probe_paths.control.log import read_log
-from matstd.probe_paths.control.steps import Halt, Move, Print, ProbeStep
-from matstd.probe_paths.emit.program import make_dry_run
-from matstd.probe_paths.language.dialect_file import read_dialect
+from matstd.probe_paths.control import Halt, Move, Print, ProbeStep, interpret, read_log
+from matstd.probe_paths.emit import make_dry_run
+from matstd.probe_paths.language import Touch, read_blocks, read_dialect
 from matstd.probe_paths.language.gcode import GCODE
-from matstd.probe_paths.language.language import Touch
-from matstd.probe_paths.language.languages import read_blocks
 from matstd.twin.errors import BadFile
 from matstd.twin.units import NM, UM
 

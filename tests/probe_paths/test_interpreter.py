@@ -7,12 +7,19 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from matstd.artefact.tool.probe import Probe
-from matstd.probe_paths.control.interpreter import interpret, read_program, stated_probe
-from matstd.probe_paths.control.steps import Halt, Move, Print, ProbeStep
+from matstd.artefact.tool import Probe
+from matstd.probe_paths.control import (
+    Halt,
+    Move,
+    Print,
+    ProbeStep,
+    interpret,
+    read_program,
+    stated_probe,
+)
 from matstd.twin.errors import BadFile
 from matstd.twin.frames import apply, turn
-from matstd.twin.machine.kinematics import linear_directions, tip
+from matstd.twin.machine import linear_directions, tip
 from matstd.twin.units import DEG
 
 ROUNDING = 1e-4

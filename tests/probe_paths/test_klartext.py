@@ -1,17 +1,16 @@
 import numpy as np
 import pytest
 
-from matstd.artefact.tool.probe import Probe
-from matstd.probe_paths.language.blocks import Kind
-from matstd.probe_paths.language.dialect import CYCLE_NAMES, DISTANCE_WORDS, Dialect
+from matstd.artefact.tool import Probe
+from matstd.probe_paths.language import Datum, Dialect, Kind, Touch, read_blocks
+from matstd.probe_paths.language.dialect import CYCLE_NAMES, DISTANCE_WORDS
 from matstd.probe_paths.language.klartext import DATUM_SHIFT_OFF, KLARTEXT, PLANE_OFF, plane
-from matstd.probe_paths.language.language import Datum, Touch
-from matstd.probe_paths.language.languages import read_blocks
 from matstd.probe_paths.language.text import signed
-from matstd.probe_paths.plan.heading import Heading, parse_heading, rounded_setup
+from matstd.probe_paths.plan import Heading, parse_heading
+from matstd.probe_paths.plan.heading import rounded_setup
 from matstd.twin.errors import BadFile, DesignError
 from matstd.twin.frames import pose, rotation
-from matstd.twin.record.touches import Setup
+from matstd.twin.record import Setup
 
 k = KLARTEXT
 ROUNDING = 1e-6

@@ -12,22 +12,21 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from matstd.artefact.tool.probe import Probe
-from matstd.probe_paths.campaign.contact_solver import VirtualMachine
+from matstd.artefact.tool import Probe
+from matstd.probe_paths.campaign import VirtualMachine
 from matstd.probe_paths.campaign.virtual_run import run_programs
-from matstd.probe_paths.control.interpreter import interpret
-from matstd.probe_paths.control.steps import ProbeStep
-from matstd.probe_paths.emit.program import make_programs
-from matstd.probe_paths.language.dialect_file import read_dialect
+from matstd.probe_paths.control import ProbeStep, interpret
+from matstd.probe_paths.emit import make_programs
+from matstd.probe_paths.language import read_dialect
+from matstd.probe_paths.linuxcnc import installed, shortened
 from matstd.probe_paths.linuxcnc import session as session_module
 from matstd.probe_paths.linuxcnc.machine_config import latch_error, latch_u, machine_files
-from matstd.probe_paths.linuxcnc.replanned import shortened
-from matstd.probe_paths.linuxcnc.session import _answer, _listen, installed, run_on_linuxcnc
+from matstd.probe_paths.linuxcnc.session import _answer, _listen, run_on_linuxcnc
 from matstd.probe_paths.linuxcnc.twin_contact import TwinContact
 from matstd.twin.effects.backlash import Backlash
 from matstd.twin.errors import DesignError
 from matstd.twin.frames import pose, rotation
-from matstd.twin.model.effect import contribution
+from matstd.twin.model import contribution
 from matstd.twin.units import DEG, NM, UM
 
 LATCH = 0.2 * UM

@@ -10,24 +10,18 @@ import pytest
 
 from matstd.api.replanning import feeds_of
 from matstd.artefact.body import Base, contact, write_standard
-from matstd.artefact.tool.probe import Probe
+from matstd.artefact.tool import Probe
 from matstd.cli import main
-from matstd.probe_paths.campaign.collisions import check_moves
-from matstd.probe_paths.campaign.contact_solver import VirtualMachine
-from matstd.probe_paths.campaign.evaluation import ball_centres
-from matstd.probe_paths.campaign.simulation import simulate_search
+from matstd.probe_paths.campaign import VirtualMachine, ball_centres, check_moves, simulate_search
 from matstd.probe_paths.campaign.virtual_run import run_programs
-from matstd.probe_paths.control.interpreter import interpret, read_program
-from matstd.probe_paths.control.log import read_log
-from matstd.probe_paths.emit.program import make_programs, make_search
-from matstd.probe_paths.emit.writer import Feeds
-from matstd.probe_paths.locate.find import Spread, find_standard
+from matstd.probe_paths.control import interpret, read_log, read_program
+from matstd.probe_paths.emit import Feeds, make_programs, make_search
+from matstd.probe_paths.locate import Spread, find_standard, plan_search
 from matstd.probe_paths.locate.relief import Relief
-from matstd.probe_paths.locate.search_plan import plan_search
-from matstd.probe_paths.plan.clearance import ToolClearance
+from matstd.probe_paths.plan import ToolClearance
 from matstd.twin.errors import BadFile, NotEnoughData, NotReachable
 from matstd.twin.frames import fixed_xyz, pose
-from matstd.twin.record.touches import Setup
+from matstd.twin.record import Setup
 from matstd.twin.units import DEG, UM
 
 MACHINE = Path(__file__).parents[2] / "examples" / "hsm600u-machine.toml"

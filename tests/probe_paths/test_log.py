@@ -7,20 +7,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from matstd.artefact.body.known import Known
-from matstd.probe_paths.campaign.contact_solver import FIRST_MORNING, VirtualMachine
-from matstd.probe_paths.campaign.evaluation import evaluate
+from matstd.artefact.body import Known
+from matstd.probe_paths.campaign import VirtualMachine, evaluate
+from matstd.probe_paths.campaign.contact_solver import FIRST_MORNING
 from matstd.probe_paths.campaign.virtual_run import run_programs
-from matstd.probe_paths.control.log import read_log
-from matstd.probe_paths.language.dialect import Dialect
-from matstd.probe_paths.language.masks import MaskLine, parse_mask
-from matstd.twin.effects.geometric import ComponentError
+from matstd.probe_paths.control import read_log
+from matstd.probe_paths.language import Dialect, MaskLine, parse_mask
+from matstd.twin.effects import ComponentError
 from matstd.twin.errors import BadFile, DesignError, NotEnoughData
-from matstd.twin.files.run_file import read_run
-from matstd.twin.files.run_writer import write_run
+from matstd.twin.files import read_run, write_run
 from matstd.twin.frames import pose, rotation
-from matstd.twin.model.effect import contribution
-from matstd.twin.record.touches import computed_deviation
+from matstd.twin.model import contribution
+from matstd.twin.record import computed_deviation
 from matstd.twin.units import NM, UM, URAD
 
 PRINTED = 1e-6

@@ -6,10 +6,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from matstd.probe_paths.campaign.contact_solver import VirtualMachine
-from matstd.probe_paths.campaign.evaluation import evaluate
+from matstd.probe_paths.campaign import VirtualMachine, evaluate
 from matstd.probe_paths.campaign.virtual_run import run_programs
-from matstd.probe_paths.control.log import UNDATED, read_log
+from matstd.probe_paths.control import UNDATED, read_log
 from matstd.twin.errors import BadFile, DesignError
 from matstd.twin.frames import pose
 from matstd.twin.units import NM, UM

@@ -6,18 +6,13 @@ from itertools import permutations
 import numpy as np
 import pytest
 
-from matstd.artefact.reach.touchable import Requests
-from matstd.artefact.tool.probe import Probe
-from matstd.probe_paths.campaign.order_study import (
-    _sd_beside,
-    _shortest,
-    orders,
-    probing_time,
-)
-from matstd.probe_paths.plan.order import short_order
-from matstd.probe_paths.plan.touch_plan import PlanOptions
-from matstd.twin.library.ordinary import ordinary_model
-from matstd.twin.record.touches import Setup
+from matstd.artefact.reach import Requests
+from matstd.artefact.tool import Probe
+from matstd.probe_paths.campaign import orders, probing_time
+from matstd.probe_paths.campaign.order_study import _sd_beside, _shortest
+from matstd.probe_paths.plan import PlanOptions, short_order
+from matstd.twin.library import ordinary_model
+from matstd.twin.record import Setup
 from matstd.twin.units import MINUTE, UM
 
 END_OF_A_FILE = 10.0

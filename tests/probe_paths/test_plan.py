@@ -7,26 +7,24 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from matstd.artefact.body.datum import STEM_CLEARANCE, DatumSphere
-from matstd.artefact.reach.touchable import Requests
-from matstd.artefact.reach.workshop import Workshop
-from matstd.artefact.tool.heights import solid_hull, swing_height, top_height
-from matstd.artefact.tool.probe import Probe
-from matstd.probe_paths.plan import planner
-from matstd.probe_paths.plan.order import (
-    LONGEST_TURN,
-    nearest_neighbours,
+from matstd.artefact.body import DatumSphere
+from matstd.artefact.body.datum import STEM_CLEARANCE
+from matstd.artefact.reach import Requests, Workshop
+from matstd.artefact.tool import Probe, solid_hull, swing_height, top_height
+from matstd.probe_paths.plan import (
+    PlanOptions,
+    plan_touches,
+    planner,
+    requests_at,
     short_order,
-    visits,
     waypoints,
 )
-from matstd.probe_paths.plan.planner import plan_touches
-from matstd.probe_paths.plan.touch_plan import PlanOptions, requests_at
+from matstd.probe_paths.plan.order import LONGEST_TURN, nearest_neighbours, visits
 from matstd.twin.errors import DesignError, NotReachable, ShapeMismatch
 from matstd.twin.frames import apply, fixed_xyz
 from matstd.twin.frames import pose as at_pose
-from matstd.twin.machine.kinematics import table_to_tool, tip
-from matstd.twin.record.touches import Setup
+from matstd.twin.machine import table_to_tool, tip
+from matstd.twin.record import Setup
 from matstd.twin.units import DEG
 
 ROUNDING = 1e-9

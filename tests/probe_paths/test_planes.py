@@ -9,23 +9,19 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from matstd.artefact.brief.project_file import read_project
-from matstd.artefact.tool.probe import Probe
-from matstd.probe_paths.campaign.contact_solver import VirtualMachine
-from matstd.probe_paths.campaign.evaluation import evaluate
+from matstd.artefact.brief import read_project
+from matstd.artefact.tool import Probe
+from matstd.probe_paths.campaign import VirtualMachine, evaluate
 from matstd.probe_paths.campaign.virtual_run import run_programs
-from matstd.probe_paths.control.interpreter import interpret
-from matstd.probe_paths.control.log import read_log
-from matstd.probe_paths.control.steps import Move, ProbeStep
-from matstd.probe_paths.emit.program import make_dry_run, make_programs
-from matstd.probe_paths.language.dialect import Dialect
-from matstd.probe_paths.language.dialect_file import read_dialect
-from matstd.probe_paths.plan.frame import ProgramFrame
-from matstd.probe_paths.stations.from_brief import dialects_of
-from matstd.twin.effects.geometric import component
+from matstd.probe_paths.control import Move, ProbeStep, interpret, read_log
+from matstd.probe_paths.emit import make_dry_run, make_programs
+from matstd.probe_paths.language import Dialect, read_dialect
+from matstd.probe_paths.plan import ProgramFrame
+from matstd.probe_paths.stations import dialects_of
+from matstd.twin.effects import component
 from matstd.twin.errors import BadFile, DesignError
-from matstd.twin.files.machine_file import read_machine
-from matstd.twin.machine.kinematics import table_to_tool
+from matstd.twin.files import read_machine
+from matstd.twin.machine import table_to_tool
 from matstd.twin.model import contribution
 
 ROOT = Path(__file__).parents[2]

@@ -11,23 +11,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from matstd.artefact.reach.touchable import ProbeReach
-from matstd.artefact.reach.workshop import Solid, Workshop, round_table
-from matstd.artefact.tool.heights import solid_hull, swing_height, top_height
-from matstd.artefact.tool.probe import NOSE_HEIGHT, Probe
-from matstd.probe_paths.campaign.collisions import check_moves
-from matstd.probe_paths.control.interpreter import interpret
-from matstd.probe_paths.control.steps import Move, ProbeStep
-from matstd.probe_paths.emit.program import make_programs
-from matstd.probe_paths.emit.writer import Feeds
-from matstd.probe_paths.plan.clearance import ToolClearance
-from matstd.probe_paths.plan.heading import Heading, parse_heading
-from matstd.probe_paths.plan.planner import plan_touches
-from matstd.probe_paths.plan.touch_plan import PlanOptions
+from matstd.artefact.reach import ProbeReach, Solid, Workshop, round_table
+from matstd.artefact.tool import Probe, solid_hull, swing_height, top_height
+from matstd.artefact.tool.probe import NOSE_HEIGHT
+from matstd.probe_paths.campaign import check_moves
+from matstd.probe_paths.control import Move, ProbeStep, interpret
+from matstd.probe_paths.emit import Feeds, make_programs
+from matstd.probe_paths.plan import Heading, PlanOptions, ToolClearance, parse_heading, plan_touches
 from matstd.twin.errors import BadFile
 from matstd.twin.frames import apply, turn
-from matstd.twin.machine.kinematics import linear_directions, table_to_tool, tip
-from matstd.twin.record.touches import Setup, linear_approach
+from matstd.twin.machine import linear_directions, table_to_tool, tip
+from matstd.twin.record import Setup, linear_approach
 from matstd.twin.units import DEG
 
 WIDE = Probe(stack=((40.0, 1.5), (160.0, 31.0)), nose_radius=50.0)

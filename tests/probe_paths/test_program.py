@@ -7,22 +7,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from matstd.artefact.tool.probe import Probe
-from matstd.probe_paths.campaign.collisions import check_moves
-from matstd.probe_paths.control.clock import Clock
-from matstd.probe_paths.control.interpreter import interpret
-from matstd.probe_paths.control.steps import Move
-from matstd.probe_paths.emit.program import make_dry_run, make_programs
-from matstd.probe_paths.emit.writer import Feeds, visit_title
-from matstd.probe_paths.language.blocks import Kind
-from matstd.probe_paths.language.dialect import Dialect
-from matstd.probe_paths.language.languages import read_blocks
-from matstd.probe_paths.language.text import MAX_LINE
-from matstd.probe_paths.plan.planner import plan_touches
-from matstd.probe_paths.plan.touch_plan import PlanOptions, requests_at
+from matstd.artefact.tool import Probe
+from matstd.probe_paths.campaign import check_moves
+from matstd.probe_paths.control import Clock, Move, interpret
+from matstd.probe_paths.emit import Feeds, make_dry_run, make_programs
+from matstd.probe_paths.emit.writer import visit_title
+from matstd.probe_paths.language import MAX_LINE, Dialect, Kind, read_blocks
+from matstd.probe_paths.plan import PlanOptions, plan_touches, requests_at
 from matstd.twin.errors import BadFile, DesignError
-from matstd.twin.machine.chain import Axis, make_chain
-from matstd.twin.record.touches import Setup
+from matstd.twin.machine import Axis, make_chain
+from matstd.twin.record import Setup
 from matstd.twin.units import DEG
 
 LAST_DIGIT = 2e-4

@@ -5,15 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from matstd.artefact.body.material import Material
+from matstd.artefact.body import Material, read_standard, write_standard
 from matstd.artefact.body.sag import Sag, weight_directions
-from matstd.artefact.body.standard_file import read_standard, write_standard
-from matstd.probe_paths.campaign.contact_solver import VirtualMachine
-from matstd.probe_paths.campaign.evaluation import evaluate
-from matstd.probe_paths.campaign.simulation import simulate
+from matstd.probe_paths.campaign import VirtualMachine, evaluate, simulate
 from matstd.twin.errors import BadFile
 from matstd.twin.frames import fixed_xyz, pose
-from matstd.twin.machine.chain import Axis, make_chain
+from matstd.twin.machine import Axis, make_chain
 from matstd.twin.units import DEG, NM, UM
 
 TRAVEL = {n: Axis(range=(-400.0, 400.0)) for n in "XYZ"}

@@ -7,10 +7,9 @@ import pytest
 
 from matstd.api.evaluating import evaluate_scan_log
 from matstd.artefact.body import Standard
-from matstd.artefact.layout.blank import Blank
-from matstd.artefact.layout.wavy import Wave, wavy_face
-from matstd.importers.points.scan_log import read_scan_log
-from matstd.probe_paths.scans.evaluation import ScanPoints, evaluate_scan
+from matstd.artefact.layout import Blank, Wave, wavy_face
+from matstd.importers import read_scan_log
+from matstd.probe_paths.scans import ScanPoints, evaluate_scan
 from matstd.twin.errors import BadFile
 from matstd.twin.files import read_run
 from matstd.twin.frames import apply, fixed_xyz, inverse, pose

@@ -10,28 +10,24 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from matstd.api.replanning import by_probe, of_one_setup
-from matstd.artefact.brief.project_file import read_project
-from matstd.artefact.reach.bodies import Clamping
-from matstd.artefact.reach.workshop import Solid, Workshop, round_table
-from matstd.artefact.tool.probe import Probe
-from matstd.diagnosis.fit.identification import fit_run
-from matstd.probe_paths.campaign.contact_solver import VirtualMachine
-from matstd.probe_paths.campaign.evaluation import evaluate
+from matstd.artefact.brief import read_project
+from matstd.artefact.reach import Clamping, Solid, Workshop, round_table
+from matstd.artefact.tool import Probe
+from matstd.diagnosis.fit import fit_run
+from matstd.probe_paths.campaign import VirtualMachine, evaluate
 from matstd.probe_paths.campaign.virtual_run import run_programs
-from matstd.probe_paths.control.interpreter import read_program
-from matstd.probe_paths.control.log import read_log
-from matstd.probe_paths.language.dialect import Dialect
-from matstd.probe_paths.plan.planner import plan_touches
-from matstd.probe_paths.plan.touch_plan import PlanOptions
-from matstd.probe_paths.stations.from_brief import all_programs, make_stations, with_tool
-from matstd.probe_paths.stations.planned import _in_other_clamping, plan_campaign
-from matstd.twin.effects.setup_error import setup_errors
+from matstd.probe_paths.control import read_log, read_program
+from matstd.probe_paths.language import Dialect
+from matstd.probe_paths.plan import PlanOptions, plan_touches
+from matstd.probe_paths.stations import all_programs, make_stations, plan_campaign
+from matstd.probe_paths.stations.from_brief import with_tool
+from matstd.probe_paths.stations.planned import _in_other_clamping
+from matstd.twin.effects import setup_errors
 from matstd.twin.errors import BadFile, DesignError, NotReachable
-from matstd.twin.files.run_file import read_run
-from matstd.twin.files.run_writer import write_run
+from matstd.twin.files import read_run, write_run
 from matstd.twin.frames import pose, rotation
 from matstd.twin.model import Model
-from matstd.twin.record.touches import Setup
+from matstd.twin.record import Setup
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "hsm600u.toml"
 WIDE = Probe(stack=((40.0, 1.5), (160.0, 31.0)), nose_radius=50.0)

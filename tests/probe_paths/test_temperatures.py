@@ -8,19 +8,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from matstd.artefact.brief.project_file import read_project
-from matstd.probe_paths.campaign.contact_solver import VirtualMachine
-from matstd.probe_paths.campaign.evaluation import evaluate
+from matstd.artefact.brief import read_project
+from matstd.probe_paths.campaign import VirtualMachine, evaluate
 from matstd.probe_paths.campaign.virtual_run import run_programs
-from matstd.probe_paths.control.interpreter import interpret
-from matstd.probe_paths.control.log import read_log
-from matstd.probe_paths.emit.program import make_programs
-from matstd.probe_paths.language.dialect import Dialect
-from matstd.probe_paths.plan.heading import Sensor
-from matstd.probe_paths.stations.from_brief import dialects_of
+from matstd.probe_paths.control import interpret, read_log
+from matstd.probe_paths.emit import make_programs
+from matstd.probe_paths.language import Dialect
+from matstd.probe_paths.plan import Sensor
+from matstd.probe_paths.stations import dialects_of
 from matstd.twin.errors import BadFile
-from matstd.twin.files.run_file import read_run
-from matstd.twin.files.run_writer import write_run
+from matstd.twin.files import read_run, write_run
 
 ROOT = Path(__file__).parents[2]
 sys.path.insert(0, str(ROOT / "tests" / "golden"))

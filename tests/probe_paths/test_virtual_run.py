@@ -7,25 +7,21 @@ import pytest
 from scipy.interpolate import BSpline
 from scipy.optimize import brentq, minimize
 
-from matstd.artefact.body.patch import Meeting
-from matstd.artefact.reach.workshop import Workshop, round_table
-from matstd.artefact.tool.probe import Probe
-from matstd.probe_paths.campaign.contact_solver import VirtualMachine
+from matstd.artefact.body import Meeting
+from matstd.artefact.reach import Workshop, round_table
+from matstd.artefact.tool import Probe
+from matstd.probe_paths.campaign import VirtualMachine
 from matstd.probe_paths.campaign.stamps import check_program_stamp
 from matstd.probe_paths.campaign.virtual_run import Outcome, run_programs
-from matstd.probe_paths.control.interpreter import interpret
-from matstd.probe_paths.emit.program import make_programs
-from matstd.probe_paths.plan.planner import plan_touches
-from matstd.probe_paths.plan.touch_plan import PlanOptions, requests_at
-from matstd.twin.effects.geometric import ComponentError
-from matstd.twin.effects.location import LocationError
+from matstd.probe_paths.control import interpret
+from matstd.probe_paths.emit import make_programs
+from matstd.probe_paths.plan import PlanOptions, plan_touches, requests_at
+from matstd.twin.effects import ComponentError, LocationError
 from matstd.twin.errors import DesignError, NotReachable
 from matstd.twin.frames import apply, inverse, pose, rotation, turn
-from matstd.twin.machine.contribution import Contribution
-from matstd.twin.machine.kinematics import exact_tip, table_to_tool, tip
-from matstd.twin.model.effect import contribution
-from matstd.twin.model.model import Model
-from matstd.twin.record.touches import Setup, Touches, at_poses
+from matstd.twin.machine import Contribution, exact_tip, table_to_tool, tip
+from matstd.twin.model import Model, contribution
+from matstd.twin.record import Setup, Touches, at_poses
 from matstd.twin.units import DEG, NM, UM, URAD
 
 HARDLY_CURVED = 0.002 * UM

@@ -6,15 +6,9 @@ import numpy as np
 import pytest
 
 from matstd.artefact.place import Family, FamilyFigures
-from matstd.report.words.design_words import (
-    AT_20,
-    best_rival,
-    blind_spots,
-    design_lines,
-    proof_sentence,
-    verdict_of_design,
-)
-from matstd.report.words.family_words import family_line, shown_line
+from matstd.report.words import best_rival, design_lines, shown_line, verdict_of_design
+from matstd.report.words.design_words import AT_20, blind_spots, proof_sentence
+from matstd.report.words.family_words import family_line
 from matstd.twin.machine import Chain
 from matstd.twin.units import UM
 

@@ -8,24 +8,26 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from matstd.diagnosis.answer.comparison import compare
-from matstd.diagnosis.answer.run_diagnosis import diagnose
-from matstd.diagnosis.answer.verdict import Verdict
-from matstd.diagnosis.residual.mean_displacements import has_poses, pose_vectors
-from matstd.diagnosis.residual.partial_residuals import partial, roughness
-from matstd.diagnosis.residual.ranked_variables import binned, rank_variables, standardised
+from matstd.diagnosis.answer import Verdict, compare, diagnose
+from matstd.diagnosis.residual import (
+    binned,
+    has_poses,
+    partial,
+    pose_vectors,
+    rank_variables,
+    standardised,
+)
+from matstd.diagnosis.residual.partial_residuals import roughness
 from matstd.report.numbers import p_value, with_uncertainty
-from matstd.report.pages.compare_page import write_compare_page
-from matstd.report.pages.diagnosis_page import write_diagnosis_page
-from matstd.report.plots.effect_pictures import draw_rivals, shown_partial
-from matstd.report.plots.pattern_pictures import draw_pattern
-from matstd.report.plots.spatial_pictures import draw_on_standard, is_spread
+from matstd.report.pages import write_compare_page, write_diagnosis_page
+from matstd.report.plots import draw_on_standard, draw_pattern, draw_rivals, is_spread
+from matstd.report.plots.effect_pictures import shown_partial
 from matstd.report.style import save
-from matstd.report.words.diagnosis_words import named_value, region_sentence, structure_words
-from matstd.report.words.verdict_words import verdict_sentence
+from matstd.report.words import region_sentence, structure_words, verdict_sentence
+from matstd.report.words.diagnosis_words import named_value
 from matstd.twin.effects.backlash import KIND as BACKLASH
 from matstd.twin.effects.periodic import KIND as PERIODIC
-from matstd.twin.library.ordinary import ordinary_model
+from matstd.twin.library import ordinary_model
 from matstd.twin.thermal.thermal_lag import KIND as LAG
 from matstd.twin.units import HOUR, NM, UM
 

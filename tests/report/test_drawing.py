@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 
 from matstd.artefact.price import Construction
-from matstd.cad_out.details import DOT
-from matstd.cad_out.details.detail_list import details_of
-from matstd.cad_out.making.joints import joints_of
-from matstd.report.drawing.drawing import draw_sheet, write_drawing
+from matstd.cad_out.details import DOT, details_of
+from matstd.cad_out.making import joints_of
+from matstd.report.drawing import Issuer, write_drawing
+from matstd.report.drawing.drawing import draw_sheet
 from matstd.report.drawing.marks import Views, draw_datums
 from matstd.report.drawing.sections import draw_screw
 from matstd.report.drawing.sheet import A2, Sheet, View
-from matstd.report.drawing.tables import COLUMN, Issuer
+from matstd.report.drawing.tables import COLUMN
 from matstd.report.drawing.views import draw_from
 
 ISSUER = Issuer("A. Müller", "Workshop & Co", 6.2)

@@ -2,12 +2,12 @@
 
 import pytest
 
-from matstd.diagnosis.answer.comparison import compare
+from matstd.diagnosis.answer import compare
 from matstd.diagnosis.reduced import compared_board
 from matstd.report.layout import Page, write_page
 from matstd.report.machine import ShownMachine, machine_html
 from matstd.report.run_view import Findings, run_view
-from matstd.twin.library.ordinary import ordinary_model
+from matstd.twin.library import ordinary_model
 from matstd.twin.units import UM
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]  # Chromium is driven in every run

@@ -8,16 +8,14 @@ import pytest
 from browser import faults, opened, page_data, requests, run
 
 from matstd.api.diagnosing import Diagnosis as SavedDiagnosis
-from matstd.diagnosis.answer.comparison import compare
-from matstd.diagnosis.answer.run_diagnosis import diagnose
-from matstd.diagnosis.fit.identification import fit_run
-from matstd.diagnosis.fit.prior import Prior
+from matstd.diagnosis.answer import compare, diagnose
+from matstd.diagnosis.fit import Prior, fit_run
 from matstd.diagnosis.laws import amplitudes, learn_remainder
 from matstd.diagnosis.reduced import compared_board, learnt_board
 from matstd.report.laws import law_curve
 from matstd.report.layout import Page, write_page
 from matstd.report.run_view import comparison_view, diagnosis_view, learnt_view
-from matstd.twin.model.model import Model
+from matstd.twin.model import Model
 from matstd.twin.units import UM
 
 LAW = "law(bias,step time)"

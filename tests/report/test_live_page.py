@@ -10,19 +10,18 @@ import numpy as np
 import pytest
 from browser import faults, numbers_of, opened, requests, run
 
-from matstd.diagnosis.answer.comparison import compare
+from matstd.diagnosis.answer import compare
 from matstd.diagnosis.choice import candidate_effects
-from matstd.diagnosis.files.diagnosis_file import diagnosis_table
-from matstd.diagnosis.fit.identification import fit_run
-from matstd.diagnosis.fit.prior import Prior
+from matstd.diagnosis.files import diagnosis_table
+from matstd.diagnosis.fit import Prior, fit_run
 from matstd.diagnosis.reduced import compared_board, diagnosed_board
 from matstd.diagnosis.reduced.board import MOST_SWITCHES
 from matstd.report.layout import Page, write_page
 from matstd.report.run_view import Findings, Framed, diagnosis_view, run_view
 from matstd.report.run_view.run_data import run_data
 from matstd.report.run_view.touched_bodies import touched_bodies
-from matstd.twin.library.ordinary import ordinary_model
-from matstd.twin.model.model import Model
+from matstd.twin.library import ordinary_model
+from matstd.twin.model import Model
 from matstd.twin.numbers import significant
 from matstd.twin.units import UM
 

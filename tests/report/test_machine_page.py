@@ -9,10 +9,16 @@ from browser import faults, opened, page_data, requests
 
 import matstd
 from matstd.compensation.field import MachineErrors, State
-from matstd.report.machine import Played, ShownMachine, error_functions, machine_html
+from matstd.report.machine import (
+    Played,
+    ShownMachine,
+    body_meshes,
+    error_functions,
+    machine_html,
+    thinned,
+)
 from matstd.report.machine.chain_bodies import chain_bodies
 from matstd.report.machine.error_series import series_at
-from matstd.report.machine.meshes import body_meshes, thinned
 from matstd.sensitivity.population import Population, drawn_errors
 from matstd.twin.errors import BadFile
 from matstd.twin.files import read_machine

@@ -2,11 +2,8 @@
 
 import numpy as np
 
-from matstd.artefact.body.material import Material
-from matstd.cad_out.making.cutting import Cutting
-from matstd.cad_out.making.hints import FaceHint
-from matstd.cad_out.making.making_file import Making
-from matstd.cad_out.making.stiffness import Stiffness
+from matstd.artefact.body import Material
+from matstd.cad_out.making import Cutting, FaceHint, Making, Stiffness
 from matstd.report.pages.standard_sections import making_rows
 from matstd.twin.units import DEG
 

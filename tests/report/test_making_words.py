@@ -5,12 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from matstd.artefact.brief.brief import Brief
-from matstd.artefact.layout.blank import Blank
+from matstd.artefact.brief import Brief
+from matstd.artefact.layout import Blank
 from matstd.artefact.price import Construction, prices_of
-from matstd.cad_out.making.making_file import Making
-from matstd.cad_out.making.stiffness import Stiffness
-from matstd.report.task.making_words import fewer_lines, making_lines, price_lines
+from matstd.cad_out.making import Making, Stiffness
+from matstd.report.task import fewer_lines, making_lines, price_lines
 from matstd.stages.design import _check_first_mode
 from matstd.twin.errors import BadFile
 

@@ -15,7 +15,7 @@ from matstd.report.effects import (
     words_of_name,
 )
 from matstd.report.identifiability.identification_file import identification_table
-from matstd.twin.library.catalogue import parse_effect
+from matstd.twin.library import parse_effect
 
 LAGS = ["thermal-lag(EZZ)", "thermal-lag(EZY)", "thermal-lag(EZX)", "thermal-lag(EZB)"]
 

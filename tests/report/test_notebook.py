@@ -9,18 +9,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from matstd.diagnosis.answer.comparison import compare
-from matstd.diagnosis.answer.run_diagnosis import diagnose
+from matstd.diagnosis.answer import compare, diagnose
 from matstd.report.pages import drawing
 from matstd.report.words import comparison_sentence, verdict_sentence
-from matstd.sensitivity.first_order.workspace import Workspace
-from matstd.sensitivity.population.sampling import Population
-from matstd.sensitivity.study.machine_study import run_study
-from matstd.sensitivity.study.study_file import write_study
+from matstd.sensitivity.first_order import Workspace
+from matstd.sensitivity.population import Population
+from matstd.sensitivity.study import run_study, write_study
 from matstd.twin import display
 from matstd.twin.errors import MissingLibrary
-from matstd.twin.files.run_file import read_run
-from matstd.twin.library.ordinary import ordinary_model
+from matstd.twin.files import read_run
+from matstd.twin.library import ordinary_model
 from matstd.twin.thermal.thermal_lag import KIND as LAG
 from matstd.twin.units import UM
 

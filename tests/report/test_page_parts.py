@@ -9,10 +9,18 @@ import openpyxl
 import pytest
 from html_tables import shown_tables
 
-from matstd.report.layout import pdf
-from matstd.report.layout.html import marked, rendered, write_page
-from matstd.report.layout.pdf import printer, write_pdf
-from matstd.report.layout.section import KeyFigure, Page, Section, Table
+from matstd.report.layout import (
+    KeyFigure,
+    Page,
+    Section,
+    Table,
+    marked,
+    pdf,
+    printer,
+    write_page,
+    write_pdf,
+)
+from matstd.report.layout.html import rendered
 from matstd.report.layout.tables import plain, unmarked, value
 from matstd.twin.errors import DesignError, MissingLibrary
 from matstd.twin.words import deviations_in

@@ -8,12 +8,11 @@ import pytest
 from browser import page_data
 
 from matstd.compensation.field import MachineErrors
-from matstd.probe_paths.control.interpreter import interpret
-from matstd.probe_paths.language.dialect import Dialect
+from matstd.probe_paths.control import interpret
+from matstd.probe_paths.language import Dialect
 from matstd.probe_paths.plan import ToolClearance
-from matstd.report.machine.played import last_moves, played_probing
-from matstd.report.machine.probing_page import PLAYBACK, write_playback
-from matstd.report.machine.set_up import set_up_bodies
+from matstd.report.machine import PLAYBACK, played_probing, set_up_bodies, write_playback
+from matstd.report.machine.played import last_moves
 from matstd.twin.frames import apply, inverse
 from matstd.twin.library import parse_sized_effect
 from matstd.twin.machine import tip

@@ -4,9 +4,10 @@ from typing import get_args
 
 import pytest
 
-from matstd.diagnosis.fit.unit_mistakes import MistakenUnit, UnitMistake
+from matstd.diagnosis.fit import MistakenUnit, UnitMistake
 from matstd.diagnosis.remarks import Noticed, Remark, What, noticed
-from matstd.report.words.remark_words import _SENTENCES, remark_sentence
+from matstd.report.words import remark_sentence
+from matstd.report.words.remark_words import _SENTENCES
 from matstd.twin.units import UM
 
 

@@ -8,10 +8,9 @@ import pytest
 import trimesh
 
 from matstd.cad_out.kernel.process import Ending
-from matstd.report.scenes import standard_scene
+from matstd.report.scenes import Scene, draw_standard, draw_volumes, standard_scene
 from matstd.report.scenes.renderer import picture_axes
-from matstd.report.scenes.standard_scene import draw_standard
-from matstd.report.scenes.volume_scene import PIXELS, Scene, composed, draw_volumes, eye
+from matstd.report.scenes.volume_scene import PIXELS, composed, eye
 from matstd.twin.errors import DesignError, MissingLibrary, ShapeMismatch
 
 READINGS = (

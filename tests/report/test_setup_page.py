@@ -9,15 +9,17 @@ from html_tables import shown_tables
 
 from matstd.artefact.body import Meeting, contact
 from matstd.artefact.reach import TABLE, Solid
-from matstd.probe_paths.campaign.tolerance import STEPS_MM, setup_tolerance
-from matstd.probe_paths.emit.writer import Feeds
-from matstd.probe_paths.language.dialect import Dialect
-from matstd.probe_paths.locate.beside import companions
-from matstd.probe_paths.stations.from_brief import Station
-from matstd.report.pages.setup_page import PAGE, PICTURE, write_setup_page
+from matstd.probe_paths.campaign import setup_tolerance
+from matstd.probe_paths.campaign.tolerance import STEPS_MM
+from matstd.probe_paths.emit import Feeds
+from matstd.probe_paths.language import Dialect
+from matstd.probe_paths.locate import companions
+from matstd.probe_paths.stations import Station
+from matstd.report.pages import write_setup_page
+from matstd.report.pages.setup_page import PAGE, PICTURE
 from matstd.report.plots import draw_setup
 from matstd.twin.frames import apply, inverse, pose, turn
-from matstd.twin.machine.kinematics import linear_directions, tip
+from matstd.twin.machine import linear_directions, tip
 
 
 @pytest.fixture(scope="module")

@@ -9,23 +9,22 @@ import pytest
 
 from matstd.cad_out.kernel.process import Ending
 from matstd.report.maps.study_maps import _volumetric_sections
+from matstd.report.pages import write_study_page
 from matstd.report.pages.study_page import (
     ERROR_3D,
     S_3D,
     draw_study_volumes,
     error_scenes,
     sensitivity_scenes,
-    write_study_page,
 )
 from matstd.report.style import figure, save
-from matstd.report.words.sensitivity_words import sampling_words
-from matstd.sensitivity.first_order.workspace import Workspace
-from matstd.sensitivity.population.sampling import Population
-from matstd.sensitivity.study.machine_study import run_study
-from matstd.twin.files.machine_file import read_machine
+from matstd.report.words import sampling_words
+from matstd.sensitivity.first_order import Workspace
+from matstd.sensitivity.population import Population
+from matstd.sensitivity.study import run_study
+from matstd.twin.files import read_machine
 from matstd.twin.frames import apply
-from matstd.twin.machine.chain import Axis, make_chain
-from matstd.twin.machine.kinematics import tip
+from matstd.twin.machine import Axis, make_chain, tip
 from matstd.twin.units import DEG, UM
 
 NM = 1e-6  # mm

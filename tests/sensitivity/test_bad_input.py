@@ -5,12 +5,11 @@ import pytest
 
 from matstd.report.maps import study_maps
 from matstd.report.style import nothing as nothing_to_draw
-from matstd.sensitivity.first_order.workspace import Workspace
-from matstd.sensitivity.population.sampling import Population
-from matstd.sensitivity.study.machine_study import run_study
-from matstd.sensitivity.study.study_file import write_study
+from matstd.sensitivity.first_order import Workspace
+from matstd.sensitivity.population import Population
+from matstd.sensitivity.study import run_study, write_study
 from matstd.twin.errors import NotReachable
-from matstd.twin.machine.ranges import DEFAULT_RANGES, Ranges
+from matstd.twin.machine import DEFAULT_RANGES, Ranges
 
 
 @pytest.mark.filterwarnings("error")

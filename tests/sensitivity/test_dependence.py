@@ -3,21 +3,24 @@
 import numpy as np
 import pytest
 
-from matstd.sensitivity.first_order.indices import covariance, rms, variance_parts
-from matstd.sensitivity.first_order.workspace import latin_hypercube
+from matstd.sensitivity.first_order import covariance, latin_hypercube, rms, variance_parts
 from matstd.sensitivity.montecarlo.batches import first_order
-from matstd.sensitivity.population.dependence import (
+from matstd.sensitivity.population import (
     Dependence,
+    Distributions,
     Group,
-    amplitude,
+    Mix,
+    Population,
+    coefficients,
+    draw,
+    drawn_errors,
     grouped,
     product_moment,
 )
-from matstd.sensitivity.population.distributions import Distributions, Mix
-from matstd.sensitivity.population.sampling import Population, coefficients, draw, drawn_errors
-from matstd.twin.effects.geometric import ComponentError
+from matstd.sensitivity.population.dependence import amplitude
+from matstd.twin.effects import ComponentError
 from matstd.twin.errors import DesignError
-from matstd.twin.machine.ranges import DEFAULT_RANGES, Ranges
+from matstd.twin.machine import DEFAULT_RANGES, Ranges
 
 LENGTH = 160.0
 NAMES = ("EXX", "EYX", "EC0Y")

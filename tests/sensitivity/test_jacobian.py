@@ -3,12 +3,13 @@
 import numpy as np
 import pytest
 
-from matstd.sensitivity.first_order.jacobians import jacobian, jacobian_by_parameter, sensitivity
-from matstd.sensitivity.first_order.workspace import latin_hypercube
-from matstd.twin.machine.chain import Axis, make_chain
-from matstd.twin.machine.contribution import Contribution
-from matstd.twin.machine.kinematics import exact_tip, reach
-from matstd.twin.machine.symbols import Family
+from matstd.sensitivity.first_order import (
+    jacobian,
+    jacobian_by_parameter,
+    latin_hypercube,
+    sensitivity,
+)
+from matstd.twin.machine import Axis, Contribution, Family, exact_tip, make_chain, reach
 from matstd.twin.units import DEG, NM
 
 LENGTH = 160.0

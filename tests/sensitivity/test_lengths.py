@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from matstd.sensitivity.first_order.workspace import latin_hypercube
-from matstd.sensitivity.montecarlo.lengths import BINS, compiled_count, count_lengths
-from matstd.sensitivity.montecarlo.random_machines import volumetric
-from matstd.sensitivity.population.sampling import Population
+from matstd.sensitivity.first_order import latin_hypercube
+from matstd.sensitivity.montecarlo import BINS, count_lengths, volumetric
+from matstd.sensitivity.montecarlo.lengths import compiled_count
+from matstd.sensitivity.population import Population
 from matstd.twin.units import UM
 
 LENGTH = 160.0

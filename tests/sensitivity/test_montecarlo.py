@@ -3,14 +3,12 @@
 import numpy as np
 import pytest
 
-from matstd.sensitivity.first_order.indices import covariance, rms, variance_shares
-from matstd.sensitivity.first_order.workspace import latin_hypercube
-from matstd.sensitivity.montecarlo.random_machines import exact_check, volumetric
-from matstd.sensitivity.population.distributions import Distributions
-from matstd.sensitivity.population.sampling import Population, coefficients, drawn_in_chunks
+from matstd.sensitivity.first_order import covariance, latin_hypercube, rms, variance_shares
+from matstd.sensitivity.montecarlo import exact_check, volumetric
+from matstd.sensitivity.population import Distributions, Population, coefficients, drawn_in_chunks
 from matstd.twin.errors import DesignError
-from matstd.twin.machine.ranges import DEFAULT_RANGES, Ranges
-from matstd.twin.record.touches import at_poses
+from matstd.twin.machine import DEFAULT_RANGES, Ranges
+from matstd.twin.record import at_poses
 from matstd.twin.units import UM
 
 LENGTH = 160.0

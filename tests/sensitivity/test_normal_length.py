@@ -4,12 +4,11 @@ import numpy as np
 import pytest
 from scipy.stats import chi
 
-from matstd.sensitivity.first_order.indices import covariance, mean_squares
-from matstd.sensitivity.first_order.jacobians import jacobian
-from matstd.sensitivity.first_order.normal_lengths import LEVELS, normal_length
-from matstd.sensitivity.first_order.workspace import latin_hypercube
-from matstd.sensitivity.montecarlo.random_machines import volumetric
-from matstd.sensitivity.population.sampling import Population
+from matstd.sensitivity.first_order import covariance, jacobian, latin_hypercube, normal_length
+from matstd.sensitivity.first_order.indices import mean_squares
+from matstd.sensitivity.first_order.normal_lengths import LEVELS
+from matstd.sensitivity.montecarlo import volumetric
+from matstd.sensitivity.population import Population
 
 TABLE = 2e-4
 """Interpolation of the table may be off by so much of the value."""

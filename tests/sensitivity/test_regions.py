@@ -4,14 +4,12 @@ import numpy as np
 import pytest
 from machines import LENGTH
 
-from matstd.report.maps.regions_picture import draw_regions
-from matstd.report.words.sensitivity_words import dominant_words, place_words
-from matstd.sensitivity.first_order.workspace import Workspace
-from matstd.sensitivity.population.sampling import Population
-from matstd.sensitivity.shares.workspace_regions import region_totals, regions
-from matstd.twin.machine.chain import Axis, make_chain
-from matstd.twin.machine.kinematics import tip
-from matstd.twin.machine.ranges import DEFAULT_RANGES, Ranges
+from matstd.report.maps import draw_regions
+from matstd.report.words import dominant_words, place_words
+from matstd.sensitivity.first_order import Workspace
+from matstd.sensitivity.population import Population
+from matstd.sensitivity.shares import region_totals, regions
+from matstd.twin.machine import DEFAULT_RANGES, Axis, Ranges, make_chain, tip
 from matstd.twin.units import DEG, UM
 
 

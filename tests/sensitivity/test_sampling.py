@@ -3,24 +3,24 @@
 import numpy as np
 import pytest
 
-from matstd.sensitivity.first_order.workspace import latin_hypercube
-from matstd.sensitivity.population.distributions import Distributions, Mix
-from matstd.sensitivity.population.sampling import (
+from matstd.sensitivity.first_order import latin_hypercube
+from matstd.sensitivity.population import (
     DRAWS_A_CHILD,
+    Distributions,
+    Mix,
     Population,
     coefficients,
     draw,
     drawn_errors,
     drawn_in_chunks,
 )
-from matstd.twin.effects.geometric import ComponentError
-from matstd.twin.effects.location import LocationError
+from matstd.twin.effects import ComponentError, LocationError
 from matstd.twin.errors import DesignError
-from matstd.twin.files.error_file import errors_toml, read_errors
-from matstd.twin.library.ordinary import ordinary_model
-from matstd.twin.machine.ranges import Ranges
-from matstd.twin.model.effect import contribution
-from matstd.twin.record.touches import at_poses
+from matstd.twin.files import errors_toml, read_errors
+from matstd.twin.library import ordinary_model
+from matstd.twin.machine import Ranges
+from matstd.twin.model import contribution
+from matstd.twin.record import at_poses
 
 MANY = Distributions(periods=(1, 2, 3))
 

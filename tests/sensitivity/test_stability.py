@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from matstd.report.words.sensitivity_words import sampling_words, stability_words
-from matstd.sensitivity.montecarlo.random_machines import volumetric
-from matstd.sensitivity.montecarlo.stability import Stabiliser, Stability, numerical_tolerance
-from matstd.sensitivity.population.distributions import Distributions
-from matstd.sensitivity.population.sampling import Population
+from matstd.report.words import sampling_words
+from matstd.report.words.sensitivity_words import stability_words
+from matstd.sensitivity.montecarlo import Stability, volumetric
+from matstd.sensitivity.montecarlo.stability import Stabiliser, numerical_tolerance
+from matstd.sensitivity.population import Distributions, Population
 from matstd.twin.errors import DesignError
-from matstd.twin.machine.ranges import DEFAULT_RANGES, Ranges
+from matstd.twin.machine import DEFAULT_RANGES, Ranges
 from matstd.twin.units import UM
 
 LENGTH = 160.0

@@ -6,13 +6,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from matstd.report.maps.study_maps import draw_maps
-from matstd.report.words.sensitivity_words import sampling_words
-from matstd.sensitivity.first_order.workspace import Workspace
-from matstd.sensitivity.population.sampling import Population
-from matstd.sensitivity.study.machine_study import Study, run_study, section_pairs
-from matstd.sensitivity.study.study_file import write_study
-from matstd.twin.machine.chain import Axis, make_chain
+from matstd.report.maps import draw_maps
+from matstd.report.words import sampling_words
+from matstd.sensitivity.first_order import Workspace
+from matstd.sensitivity.population import Population
+from matstd.sensitivity.study import Study, run_study, write_study
+from matstd.sensitivity.study.machine_study import section_pairs
+from matstd.twin.machine import Axis, make_chain
 from matstd.twin.units import DEG, UM
 
 

@@ -3,14 +3,19 @@
 import numpy as np
 import pytest
 
-from matstd.sensitivity.first_order.workspace import latin_hypercube
+from matstd.sensitivity.first_order import latin_hypercube
 from matstd.sensitivity.montecarlo.batches import first_order
-from matstd.sensitivity.population.dependence import Group, grouped
-from matstd.sensitivity.population.distributions import Distributions
-from matstd.sensitivity.population.sampling import Population, coefficients, draw
-from matstd.sensitivity.shares.total_effect_indices import norm_shares, total_effects
+from matstd.sensitivity.population import (
+    Distributions,
+    Group,
+    Population,
+    coefficients,
+    draw,
+    grouped,
+)
+from matstd.sensitivity.shares import norm_shares, total_effects
 from matstd.twin.errors import DesignError, ShapeMismatch
-from matstd.twin.machine.ranges import DEFAULT_RANGES, Ranges
+from matstd.twin.machine import DEFAULT_RANGES, Ranges
 
 SINGLE = 1e-5
 """Indices are off by so little where the compiled code calculates in single precision."""

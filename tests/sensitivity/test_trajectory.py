@@ -8,22 +8,16 @@ from simulator_machine import read_machine as second_model
 from simulator_machine import tip as second_tip
 
 from matstd.report.maps.trajectory_pictures import axis_effect_picture, statistics_picture
-from matstd.report.words.sensitivity_words import sampling_words
-from matstd.sensitivity.first_order.workspace import Workspace
-from matstd.sensitivity.montecarlo.random_machines import volumetric
-from matstd.sensitivity.population.distributions import Distributions
-from matstd.sensitivity.population.sampling import Population
-from matstd.sensitivity.study.trajectory import (
-    along_path,
-    axis_effect,
-    axis_errors,
-    paper_trajectory,
-)
-from matstd.twin.effects.geometric import component
-from matstd.twin.effects.location import LocationError
+from matstd.report.words import sampling_words
+from matstd.sensitivity.first_order import Workspace
+from matstd.sensitivity.montecarlo import volumetric
+from matstd.sensitivity.population import Distributions, Population
+from matstd.sensitivity.study import along_path, paper_trajectory
+from matstd.sensitivity.study.trajectory import axis_effect, axis_errors
+from matstd.twin.effects import LocationError, component
 from matstd.twin.errors import DesignError, OutsideTravel, UnknownAxis
-from matstd.twin.files.machine_file import read_machine
-from matstd.twin.machine.chain import Axis, make_chain
+from matstd.twin.files import read_machine
+from matstd.twin.machine import Axis, make_chain
 from matstd.twin.units import NM, UM, URAD
 
 LENGTH = 160.0

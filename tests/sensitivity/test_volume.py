@@ -5,15 +5,12 @@ import pytest
 from machines import LENGTH
 
 from matstd.report.maps.study_maps import draw_rotary
-from matstd.sensitivity.first_order.workspace import Workspace
-from matstd.sensitivity.population.sampling import Population
-from matstd.sensitivity.study.machine_study import run_study
-from matstd.sensitivity.study.points_of_table import level, points_over_rotary
-from matstd.sensitivity.study.volume_map import has_volume, volume
+from matstd.sensitivity.first_order import Workspace
+from matstd.sensitivity.population import Population
+from matstd.sensitivity.study import has_volume, level, points_over_rotary, run_study, volume
 from matstd.twin.errors import NotReachable
 from matstd.twin.frames import apply
-from matstd.twin.machine.chain import Axis, make_chain
-from matstd.twin.machine.kinematics import tip
+from matstd.twin.machine import Axis, make_chain, tip
 from matstd.twin.units import DEG, UM
 
 NM = 1e-6  # mm

@@ -11,11 +11,10 @@ from os import _exit
 import numpy as np
 import pytest
 
-from matstd.sensitivity.first_order.workspace import latin_hypercube
-from matstd.sensitivity.montecarlo.dask_cluster import cluster
-from matstd.sensitivity.montecarlo.random_machines import volumetric
+from matstd.sensitivity.first_order import latin_hypercube
+from matstd.sensitivity.montecarlo import cluster, volumetric
 from matstd.sensitivity.montecarlo.workers import in_order
-from matstd.sensitivity.population.sampling import Population
+from matstd.sensitivity.population import Population
 from matstd.twin.errors import DesignError
 
 LENGTH, DRAWS = 160.0, 53_000  # five batches and a part of one

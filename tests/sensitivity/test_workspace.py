@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from matstd.sensitivity.first_order.workspace import Workspace, latin_hypercube, section
+from matstd.sensitivity.first_order import Workspace, latin_hypercube, section
 from matstd.twin.errors import DesignError, NotReachable, OutsideTravel, UnknownAxis
-from matstd.twin.machine.kinematics import tip
+from matstd.twin.machine import tip
 from matstd.twin.units import DEG
 
 LENGTH = 160.0

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from simulator_case import simulate_case
 
-from matstd.diagnosis.fit.identification import fit_run
-from matstd.twin.files.run_file import read_run
-from matstd.twin.library.ordinary import ordinary_model
-from matstd.twin.record.alignment import aligned
+from matstd.diagnosis.fit import fit_run
+from matstd.twin.files import read_run
+from matstd.twin.library import ordinary_model
+from matstd.twin.record import aligned
 from matstd.twin.units import UM
 
 AWAY, ABOUT_Z = np.array([1.0, -1.0, 0.3]), np.array([0.0, 0.0, 1.0])

@@ -13,7 +13,7 @@ from matstd.twin import beside as module
 from matstd.twin.beside import beside, kept_beside
 from matstd.twin.compute import blocks
 from matstd.twin.errors import BadFile
-from matstd.twin.files.machine_file import read_machine
+from matstd.twin.files import read_machine
 
 
 @pytest.fixture

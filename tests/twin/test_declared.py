@@ -9,10 +9,10 @@ import pytest
 from matstd.twin.errors import BadFile, UnknownEffect
 from matstd.twin.fields import LinearAxisName, SensorName
 from matstd.twin.library import catalogue as library
-from matstd.twin.library.trial import try_kind
-from matstd.twin.machine.chain import Axis, make_chain
+from matstd.twin.library import try_kind
+from matstd.twin.machine import Axis, make_chain
 from matstd.twin.model import Declared, Kind, Parameter, is_tunable, own_title, scanned, traits
-from matstd.twin.record.touches import at_poses
+from matstd.twin.record import at_poses
 
 CHAIN = make_chain("test", "[w f X Y Z t]", {a: Axis((-400.0, 400.0)) for a in "XYZ"})
 

@@ -7,16 +7,14 @@ import pytest
 from made_up import gauge_touches
 from scipy.integrate import solve_ivp
 
-from matstd.twin.effects.repeated import Repeated
+from matstd.twin.effects import Repeated
 from matstd.twin.errors import BadFile, UnknownEffect
-from matstd.twin.files.run_file import read_run
-from matstd.twin.files.run_writer import write_run
-from matstd.twin.library.catalogue import parse_effect, proposals
-from matstd.twin.model.model import columns
-from matstd.twin.record.copies import without_copies
-from matstd.twin.record.run import Run
-from matstd.twin.record.touches import Touches
-from matstd.twin.thermal.thermal_field import LAGS, ThermalField, field
+from matstd.twin.files import read_run, write_run
+from matstd.twin.library import parse_effect, proposals
+from matstd.twin.model import columns
+from matstd.twin.record import Run, Touches, without_copies
+from matstd.twin.thermal import field
+from matstd.twin.thermal.thermal_field import LAGS, ThermalField
 from matstd.twin.units import UM
 
 N = 60

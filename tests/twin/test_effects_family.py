@@ -7,14 +7,12 @@ import numpy as np
 import pytest
 from made_up import MACHINES, arm_poses, made_up
 
-from matstd.twin.library.catalogue import parse_effect, proposals
-from matstd.twin.library.ordinary import ordinary_model
-from matstd.twin.machine.contribution import Contribution
-from matstd.twin.model.effect import Effect, contribution, is_tunable
-from matstd.twin.model.model import Model, columns
-from matstd.twin.record.instrument import Instrument
+from matstd.twin.library import ordinary_model, parse_effect, proposals
+from matstd.twin.machine import Contribution
+from matstd.twin.model import Effect, Model, columns, contribution, is_tunable
+from matstd.twin.record import Instrument
+from matstd.twin.thermal import field
 from matstd.twin.thermal.drive_columns import first_order_lag
-from matstd.twin.thermal.thermal_field import field
 from matstd.twin.units import NM
 
 SECOND_ORDER = 60 * NM

@@ -13,11 +13,10 @@ from machines import HSM600U
 
 from matstd.twin.effects.joint_sag import KIND as JOINT_SAG
 from matstd.twin.errors import UnknownEffect
-from matstd.twin.library.catalogue import parse_effect
-from matstd.twin.machine.chain import Axis, make_chain
-from matstd.twin.model import is_tunable
-from matstd.twin.model.model import columns
-from matstd.twin.record.touches import Setup, Touches
+from matstd.twin.library import parse_effect
+from matstd.twin.machine import Axis, make_chain
+from matstd.twin.model import columns, is_tunable
+from matstd.twin.record import Setup, Touches
 from matstd.twin.units import DEG, NM, UM, URAD
 
 PER_HAND = 0.5 * NM

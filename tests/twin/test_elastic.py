@@ -4,15 +4,14 @@ import numpy as np
 import pytest
 from beam_by_work import flexibility
 
+from matstd.twin.elastic import material
 from matstd.twin.elastic.beam import SUPPORTS, bending, section
 from matstd.twin.elastic.body import GRAVITY
-from matstd.twin.elastic.materials import material
 from matstd.twin.errors import UnknownEffect
-from matstd.twin.library.catalogue import parse_effect
-from matstd.twin.library.sized_effect import parse_sized_effect
-from matstd.twin.machine.chain import Axis, make_chain
-from matstd.twin.model.model import Model
-from matstd.twin.record.touches import at_poses
+from matstd.twin.library import parse_effect, parse_sized_effect
+from matstd.twin.machine import Axis, make_chain
+from matstd.twin.model import Model
+from matstd.twin.record import at_poses
 from matstd.twin.units import UM
 
 EI, GA = 2.1e5 * 8.0e6, 8.0e4 * 5.0e3

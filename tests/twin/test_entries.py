@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 from made_up import made_up
 
-from matstd.twin.machine.contribution import Contribution, Where
-from matstd.twin.model.effect import Parameter, Term
-from matstd.twin.model.model import Model, columns
+from matstd.twin.machine import Contribution, Where
+from matstd.twin.model import Model, Parameter, Term, columns
 
 TINY = 1e-7
 """Size of an entry (mm, rad) whose square is below the tolerance."""

@@ -6,14 +6,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from matstd.twin.effects.geometric import ComponentError
+from matstd.twin.effects import ComponentError
 from matstd.twin.errors import BadFile, DesignError
-from matstd.twin.files.error_file import errors_toml, read_errors
-from matstd.twin.files.machine_file import read_machine
-from matstd.twin.files.pose_file import read_poses
-from matstd.twin.files.run_file import read_run
-from matstd.twin.files.whole import write_whole
-from matstd.twin.machine.chain import Axis, make_chain
+from matstd.twin.files import (
+    errors_toml,
+    read_errors,
+    read_machine,
+    read_poses,
+    read_run,
+    write_whole,
+)
+from matstd.twin.machine import Axis, make_chain
 from matstd.twin.units import DEG, UM, URAD
 
 MACHINE = """format = "machine/1"

@@ -8,10 +8,10 @@ from made_up import run_of
 
 from matstd.twin.effects.backlash import measured_component
 from matstd.twin.errors import BadFile
-from matstd.twin.files.run_file import read_run
+from matstd.twin.files import read_run
 from matstd.twin.files.run_writer import run_text
-from matstd.twin.library.catalogue import proposals
-from matstd.twin.record.instrument import Instrument
+from matstd.twin.library import proposals
+from matstd.twin.record import Instrument
 
 OF_A_BALL = {
     "probe-lobing",

@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 
 from matstd.twin.errors import DesignError
-from matstd.twin.library.catalogue import parse_effect
-from matstd.twin.model.model import columns
-from matstd.twin.record.instrument import Instrument
-from matstd.twin.record.several_runs import joined
+from matstd.twin.library import parse_effect
+from matstd.twin.model import columns
+from matstd.twin.record import Instrument, joined
 from matstd.twin.units import NM
 
 

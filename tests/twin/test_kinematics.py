@@ -16,11 +16,18 @@ from matstd.twin.frames import (
     skew,
     turned_about,
 )
-from matstd.twin.machine.chain import Axis, Chain, make_chain
-from matstd.twin.machine.contribution import Contribution
-from matstd.twin.machine.kinematics import exact_tip, inverse_linear, reach, tip
-from matstd.twin.machine.ranges import error_class
-from matstd.twin.machine.symbols import Family
+from matstd.twin.machine import (
+    Axis,
+    Chain,
+    Contribution,
+    Family,
+    error_class,
+    exact_tip,
+    inverse_linear,
+    make_chain,
+    reach,
+    tip,
+)
 from matstd.twin.units import DEG, NM
 
 RELATIVE = 1e-6

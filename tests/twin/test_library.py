@@ -10,8 +10,8 @@ from machines import HSM600U
 import matstd.twin.library.catalogue as library
 from matstd.twin.effects.backlash import KIND as BACKLASH
 from matstd.twin.errors import BadFile, DesignError, UnknownAxis, UnknownEffect, UnknownSymbol
-from matstd.twin.model.kind import Kind
-from matstd.twin.record.touches import at_poses
+from matstd.twin.model import Kind
+from matstd.twin.record import at_poses
 
 
 def test_spaces_do_not_matter() -> None:

@@ -6,7 +6,7 @@ import pytest
 
 from matstd.api.machines import machine_file, machine_names
 from matstd.twin.errors import BadFile
-from matstd.twin.files.machine_file import read_machine
+from matstd.twin.files import read_machine
 
 ROOT = Path(__file__).parents[2]
 ALL = [

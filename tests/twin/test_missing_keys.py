@@ -5,9 +5,7 @@ from pathlib import Path
 import pytest
 
 from matstd.twin.errors import BadFile
-from matstd.twin.files.error_file import read_errors
-from matstd.twin.files.machine_file import read_machine
-from matstd.twin.files.run_file import read_run
+from matstd.twin.files import read_errors, read_machine, read_run
 
 MACHINE = """format = "machine/1"
 name = "small"

@@ -7,14 +7,12 @@ import numpy as np
 import pytest
 from run_text import COLUMNS, HEAD, ROW, later, write
 
+from matstd.twin.effects import setup_errors
 from matstd.twin.effects.artefact import ArtefactExpansion
-from matstd.twin.effects.setup_error import setup_errors
 from matstd.twin.errors import BadFile
-from matstd.twin.files.run_file import read_run
-from matstd.twin.files.run_writer import write_run
-from matstd.twin.model.model import columns
-from matstd.twin.record.several_runs import joined
-from matstd.twin.record.touches import computed_deviation
+from matstd.twin.files import read_run, write_run
+from matstd.twin.model import columns
+from matstd.twin.record import computed_deviation, joined
 from matstd.twin.units import NM, UM
 
 STEEL = "expansion_1_K = 10.5e-6"

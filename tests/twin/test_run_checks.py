@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from matstd.twin.errors import BadFile
-from matstd.twin.files.run_file import read_run
+from matstd.twin.files import read_run
 from matstd.twin.units import UM
 
 MACHINE = """format = "machine/1"

@@ -7,10 +7,9 @@ import pytest
 from run_text import COLUMNS, HEAD, ROW, later, write
 
 from matstd.twin.errors import BadFile
-from matstd.twin.files.run_file import read_run
-from matstd.twin.files.run_writer import write_run
-from matstd.twin.machine.contribution import Where
-from matstd.twin.record.touches import computed_deviation
+from matstd.twin.files import read_run, write_run
+from matstd.twin.machine import Where
+from matstd.twin.record import computed_deviation
 from matstd.twin.units import NM, UM, URAD
 
 

@@ -7,11 +7,9 @@ import numpy as np
 import pytest
 
 from matstd.twin.errors import BadFile
-from matstd.twin.files.machine_file import read_machine
-from matstd.twin.files.sensor_file import read_sensors
-from matstd.twin.machine.chain import Chain
-from matstd.twin.record.run import Run
-from matstd.twin.record.touches import at_poses
+from matstd.twin.files import read_machine, read_sensors
+from matstd.twin.machine import Chain
+from matstd.twin.record import Run, at_poses
 
 BEGIN = datetime(2031, 5, 6, 23, 59, 0)
 TEXT = """clock,T_ram_degC,T_room_degC

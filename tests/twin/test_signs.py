@@ -20,13 +20,10 @@ import numpy as np
 import pytest
 from machines import HSM600U
 
-from matstd.twin.effects.geometric import ComponentError
-from matstd.twin.effects.location import LocationError
-from matstd.twin.machine.chain import Axis, Chain, make_chain
-from matstd.twin.machine.kinematics import tip
-from matstd.twin.machine.symbols import Family
-from matstd.twin.model.model import Model
-from matstd.twin.record.touches import at_poses
+from matstd.twin.effects import ComponentError, LocationError
+from matstd.twin.machine import Axis, Chain, Family, make_chain, tip
+from matstd.twin.model import Model
+from matstd.twin.record import at_poses
 from matstd.twin.units import DEG, NM, UM, URAD
 
 LENGTH = 160.0

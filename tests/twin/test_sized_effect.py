@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from matstd.twin.errors import DesignError
-from matstd.twin.files.machine_file import read_machine
-from matstd.twin.library.sized_effect import parse_sized_effect, parse_sizes
+from matstd.twin.files import read_machine
+from matstd.twin.library import parse_sized_effect, parse_sizes
 from matstd.twin.units import DEG
 
 EXAMPLES = Path(__file__).parents[2] / "examples"

@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 
 from matstd.twin.errors import BadFile
-from matstd.twin.files import table
-from matstd.twin.files.table import CsvTable
+from matstd.twin.files import CsvTable, table
 
 ROWS = 5000
 """More than two of the blocks in which numbers are converted."""

@@ -3,8 +3,8 @@
 import pytest
 from made_up import MACHINES, made_up
 
-from matstd.twin.library.catalogue import find_kinds, kinds, parse_effect, proposals, title_of
-from matstd.twin.machine.symbols import parse_symbol
+from matstd.twin.library import find_kinds, kinds, parse_effect, proposals, title_of
+from matstd.twin.machine import parse_symbol
 from matstd.twin.model import own_title
 
 

@@ -8,9 +8,9 @@ import pytest
 
 from matstd.twin.errors import BadFile, UnknownEffect
 from matstd.twin.library import catalogue as library
-from matstd.twin.library.trial import try_kind, users_lines
-from matstd.twin.machine.chain import Axis, make_chain
-from matstd.twin.record.touches import at_poses
+from matstd.twin.library import try_kind, users_lines
+from matstd.twin.machine import Axis, make_chain
+from matstd.twin.record import at_poses
 
 FILE = '''from dataclasses import dataclass, replace
 

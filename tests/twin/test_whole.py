@@ -7,7 +7,8 @@ import pytest
 
 from matstd.cli import main
 from matstd.twin.errors import DesignError
-from matstd.twin.files.whole import refuse_own_input, refuse_to_overwrite, write_whole
+from matstd.twin.files import refuse_to_overwrite, write_whole
+from matstd.twin.files.whole import refuse_own_input
 
 
 def test_a_device_is_no_output(tmp_path: Path) -> None:
