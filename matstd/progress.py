@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from rich.console import Console
 
 FIRST = 0.02  # fraction done from which on the pace of this run says how long the whole takes
-
 WORTH_SHOWING = 0.04  # reported fraction from which on a time left is shown
 
 CAUTION = 0.3

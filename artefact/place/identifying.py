@@ -50,17 +50,13 @@ class Base:
 
 @dataclass(frozen=True, eq=False)
 class Identifying:
-    """A standard with the possible touches on its balls, and the chosen ones.
-
-    Attributes:
-        nearness: How near the choice is to the best one; a quick choice has no bound.
-    """
+    """A standard with the possible touches on its balls, and the chosen ones."""
 
     standard: Standard
     poses: Array
     tried: Requests
     chosen: Mask
-    nearness: Certificate
+    nearness: Certificate  # how near the choice is to the best one; a quick choice has no bound
 
     @property
     def value(self) -> float:
