@@ -42,6 +42,8 @@ MIN_OWN = 0.02
 """Share of the square of a region's column that the model must leave: of a region as wide as the
 travel the model imitates nearly all, and the rest rests on its errors of second order."""
 
+MOST_REGIONS = 6  # regions that are looked for
+
 PARTS = ("shift-x", "shift-y", "shift-z", "bias")
 """Carriers beside the components of the axes: the standard, and the reading along the normal."""
 
@@ -72,7 +74,7 @@ class Region:
     p_value: float
 
 
-def regions(fit: Fit, cured: Fit | None = None, most: int = 6) -> tuple[Region, ...]:
+def regions(fit: Fit, cured: Fit | None = None) -> tuple[Region, ...]:
     """Regions of a run in which one error is not what the model has, the most evident first.
 
     Each is looked for beside those before it. Where there is none, regions where the residual
@@ -91,7 +93,7 @@ def regions(fit: Fit, cured: Fit | None = None, most: int = 6) -> tuple[Region, 
         space = space.thinned(FULL_BELOW)
     known = tuple(bounded(space))
     drawn = None if cured is None else _explained(space, fit, cured)
-    return tuple(_wrong(fit, space, known, drawn, most)) or tuple(_loud(fit, space, known, most))
+    return tuple(_wrong(fit, space, known, drawn)) or tuple(_loud(fit, space, known))
 
 
 def _explained(space: ResidualSpace, fit: Fit, cured: Fit) -> Array:
@@ -183,13 +185,12 @@ def _wrong(
     space: ResidualSpace,
     known: Sequence[Bounded],
     drawn: Array | None,
-    most: int,
 ) -> Iterator[Region]:
     """Regions in which an error is off by a constant, each beside those before it."""
     others = PARTS if space.touches.instrument.has_standard else PARTS[-1:]
     offered = bearers(space.touches, lambda C: _white(space, C), others)
     columns = [b.carrier.columns(space.touches)[:, 0] for b in offered]
-    for _ in range(most):
+    for _ in range(MOST_REGIONS):
         measures = [_Constant(space, column, drawn) for column in columns]
         found = best_box(measures, known, len(fit.used))
         if found is None:
@@ -201,7 +202,7 @@ def _wrong(
         left = float(space.residual @ space.residual)
         drop = along**2 / own
         p = float(f_probability(drop, 1.0, left - drop, space.dof - 1.0))
-        p = min(1.0, p * (found.tried if drawn is None else most))
+        p = min(1.0, p * (found.tried if drawn is None else MOST_REGIONS))
         if p >= POLICY.false_alarm or drop < POLICY.material_share * left:
             return
         bearer = offered[found.measure]
@@ -261,13 +262,13 @@ class _Scatter(NamedTuple):
         return np.where((here > there) & enough & variable.is_offered, 0.5 * gained, 0.0)
 
 
-def _loud(fit: Fit, space: ResidualSpace, known: Sequence[Bounded], most: int) -> Iterator[Region]:
+def _loud(fit: Fit, space: ResidualSpace, known: Sequence[Bounded]) -> Iterator[Region]:
     """Regions in which touches scatter more than elsewhere, each without those before it."""
     own = np.sqrt(np.maximum(1.0 - fit.solution.leverage, 1e-6))
     squares = np.zeros(len(fit.used))
     squares[fit.used] = (fit.residual[fit.used] / own / fit.u[fit.used]) ** 2
     left = fit.used.copy()
-    for _ in range(most):
+    for _ in range(MOST_REGIONS):
         if not squares[left].any():
             return
         found = best_box([_Scatter(squares, left)], known, len(fit.used))
