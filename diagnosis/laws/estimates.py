@@ -70,7 +70,8 @@ def curve_of(learning: Learning, law: Law, driver: Driver, x: Array) -> tuple[Ar
     """A law over one of its variables, in units of the carrier, with its uncertainty.
 
     A shape of another variable is held where it is largest. The uncertainty is that of amplitudes
-    and parameters together, by differences.
+    and parameters together, by differences; of a curve without a formula that of its form beside a
+    parabola, which set-ups and geometry take up.
 
     Args:
         x: Values of the variable, (M,), base unit.
@@ -96,13 +97,15 @@ def curve_of(learning: Learning, law: Law, driver: Driver, x: Array) -> tuple[Ar
     inner = law.inner(fit.run.touches)
     for i in (t.index for t in tangents):
         step = 0.02 * float(inner[i].grid[-1] - inner[i].grid[-2]) or 1e-9
-        moved = []
-        for sign in (1.0, -1.0):
-            at = list(law.places)
-            at[i] += sign * step
-            moved.append(_values(law, driver, x, tuple(at), held) @ weights[way])
-        slope.append(((moved[0] - moved[1]) / (2.0 * step))[:, None])
+        there = np.array(law.places) + step * np.eye(len(law.places))[i] * [[1.0], [-1.0]]
+        up, down = (_values(law, driver, x, tuple(at), held) @ weights[way] for at in there)
+        slope.append(((up - down) / (2.0 * step))[:, None])
     A = np.hstack(slope)
+    if law.is_curve_alone:
+        seen = driver.values(fit.run.touches)[fit.used]
+        inside = (x >= seen.min()) & (x <= seen.max())
+        parabola = np.vander((x - seen.mean()) / float(np.ptp(seen)), 3)
+        A = A - parabola @ np.linalg.lstsq(parabola[inside], A[inside], rcond=None)[0]
     return wide @ theta, np.sqrt(np.maximum(np.einsum("np,pk,nk->n", A, covariance, A), 0.0))
 
 

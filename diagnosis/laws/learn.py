@@ -29,8 +29,7 @@ from matstd.twin.laws import Carrier, Law
 from matstd.twin.model import Model
 from matstd.twin.record import Run, Touches
 
-MIN_TOUCHES_OF_LAW = 30
-"""Fewer touches than this leave no law that could be distinguished from another."""
+MIN_TOUCHES_OF_LAW = 30  # fewer leave no law that could be distinguished from another
 
 MIN_EXPLAINED = 4
 """So many gross errors for every shape, and half of them, must follow a law that is learnt from

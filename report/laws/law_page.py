@@ -144,8 +144,9 @@ def _law_sections(learning: Learning, one: LearntLaw, number: int) -> list[Secti
     numbers += [_row(p, place_words(p)) for p in places(learning, law)]
     picture = Picture(
         f"{PICTURES}/law_{number}.png",
-        "The law with twice its uncertainty, and the touches with the law put back. Each touch is "
-        "divided by its lever on the carrier; touches with a small lever are not drawn.",
+        "The law with twice its uncertainty (of a curve without a formula that of its form beside "
+        "a parabola, which geometry takes up), and the touches with the law put back, over their "
+        "levers on the carrier. Touches with a small lever are not drawn.",
         draw_law(learning, law),
     )
     table = Table(("parameter", "value"), numbers, "Numbers of the law")
