@@ -173,8 +173,7 @@ def _of_its_run(one: LearntLaw, seen: Touches, policy: LawPolicy) -> LearntLaw:
     is_stand_in = any(
         f.driver.nature in STAND_IN and f.shape.word not in PROPORTIONAL for f in one.law.factors
     )
-    is_open = is_stand_in and one.run_odds < policy.open_driver
-    is_of_run = is_open or not one.law.rests(seen)
+    is_of_run = (is_stand_in and one.run_odds < policy.open_driver) or not one.law.rests(seen)
     return replace(one, law=replace(one.law, is_of_run=is_of_run))
 
 

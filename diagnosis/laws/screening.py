@@ -187,8 +187,7 @@ def rough_shapes(space: Space, field: Field, each: int) -> list[Rough]:
     owner = [b for b in field.bearers for _ in range(b.C.shape[1])]
     share = max(1.0 - space.basis.shape[1] / space.count, 0.1)
     R, S = C * space.r[:, None], C**2
-    waves: list[Rough] = []
-    loops: list[Rough] = []
+    waves, loops = list[Rough](), list[Rough]()
     for driver in field.drivers:
         x = field.x[driver.name]
         if driver.nature == "linear" or driver.name == "time":
