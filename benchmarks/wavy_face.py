@@ -23,7 +23,6 @@ import numpy as np
 from matstd.artefact.body import (
     FreeformPatch,
     Standard,
-    graph_patch,
     max_slope,
     min_concave_radius,
 )
@@ -175,16 +174,6 @@ def small_faces(bench: Bench, body: Standard) -> tuple[FreeformPatch, ...]:
     return tuple(replace(faces[k], name=f"FF{i}") for i, k in enumerate(chosen, 1))
 
 
-def flat(face: FreeformPatch) -> FreeformPatch:
-    """A face with the mean plane of another."""
-    j = face.jet(face.grid())
-    slope = np.mean(j.hu), np.mean(j.hv)
-    blank = graph_patch(face.name, face.T_artefact_patch, face.half_size, np.zeros((8, 8)))
-    poles = blank.poles @ blank.T_artefact_patch[:3, :3] - blank.T_artefact_patch[:3, 3]
-    heights = slope[0] * poles[..., 0] + slope[1] * poles[..., 1]
-    return replace(blank, heights=heights, depth=face.depth)
-
-
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--project", default="wavy_face")
@@ -217,7 +206,8 @@ def main() -> None:
         bench.show(f"{len(balls)} balls", body, bench.some(body, args.touches))
     body, half = bodies[13], args.touches // 2
     faces = small_faces(bench, body)
-    for name, some in (("small faces", faces), ("flat pads there", tuple(map(flat, faces)))):
+    pads = tuple(face.mean_plane() for face in faces)
+    for name, some in (("small faces", faces), ("flat pads there", pads)):
         both = replace(body, patches=some)
         bench.show(f"13 balls + {len(some)} {name}", both, bench.some(both, args.touches))
     limits = replace(brief.blank.limits, max_slope=60.0 * DEG, min_concave_radius=args.radius)
@@ -232,7 +222,7 @@ def main() -> None:
         f"{min_concave_radius(face):.1f}: 13 balls beside it leave {cost:.2f} of the best 13 balls"
     )
     bare = replace(body, patches=())
-    for name, one in (("plane", flat(face)), ("wavy face", face)):
+    for name, one in (("plane", face.mean_plane()), ("wavy face", face)):
         both = replace(body, patches=(one,))
         bench.show(f"13 balls + {name}, touched", both, bench.some(both, args.touches))
         on_balls = bench.some(bare, half)

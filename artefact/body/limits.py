@@ -83,17 +83,14 @@ def check(standard: Standard, limits: Limits) -> None:
     Raises:
         NotBuildable: Names the constraint that binds most, and how many more are violated.
     """
-    violated = sorted((c for c in constraints(standard, limits) if c.slack < 0.0), key=_severity)
+    violated = [c for c in constraints(standard, limits) if c.slack < 0.0]
+    violated.sort(key=lambda c: c.slack / max(abs(c.limit), 1e-9))
     if violated:
         more = f" (and {len(violated) - 1} more)" if len(violated) > 1 else ""
         raise NotBuildable(
             f"standard '{standard.name}': {violated[0]}{more}",
             constraints=violated,
         )
-
-
-def _severity(constraint: Constraint) -> float:
-    return constraint.slack / max(abs(constraint.limit), 1e-9)
 
 
 def min_concave_radius(patch: FreeformPatch) -> float:

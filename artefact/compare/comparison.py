@@ -98,10 +98,6 @@ def evaluate_rival(
     )
 
 
-def _count_different(tried: Requests) -> int:
-    return len(np.unique(np.column_stack([tried.point, tried.rotary]), axis=0))
-
-
 def _posterior(criterion: Criterion, touches: Requests) -> Posterior:
     return Posterior(criterion.known_rows(touches), criterion.prior_sd, criterion.model.names)
 
@@ -259,7 +255,9 @@ def _judged(jobs: Sequence[_Job], options: TouchOptions, library: Visibility) ->
             chosen = tried[chosen_touches_on(here, tried, options)[0]]
         elif job.by:
             chosen = chosen_touches(here, here.objectives[job.by], tried, options)
-        available = len(tried) if here.body is None else _count_different(tried)
+        available = len(tried)
+        if here.body is not None:  # some may be there several times
+            available = len(np.unique(np.column_stack([tried.point, tried.rotary]), axis=0))
         out.append(evaluate_rival(job.name, here, chosen, job.lots, library, available, here.body))
     return out
 

@@ -184,13 +184,9 @@ def balls_on_posts(blank: Blank, count: int, rng: np.random.Generator) -> list[D
         ball_on_post(blank, "", np.array([*xy, z])) for xy, z in zip(across, heights, strict=True)
     ]
     inset = -outline_distance(across, base.half_size, base.corner_radius)
-    balls = [b for b, room in zip(balls, inset, strict=True) if room >= _rim_distance(b)]
+    rim = [max(ball.radius, ball.foot_radius + BLEND) + _LEDGE for ball in balls]
+    balls = [b for b, room, least in zip(balls, inset, rim, strict=True) if room >= least]
     return [ball_on_post(blank, f"{i}", b.centre) for i, b in enumerate(balls)]
-
-
-def _rim_distance(ball: DatumSphere) -> float:
-    """Smallest distance from the axis of a post to the outline, mm."""
-    return max(ball.radius, ball.foot_radius + BLEND) + _LEDGE
 
 
 def _widest_radius(ball: DatumSphere) -> float:

@@ -141,7 +141,8 @@ class BodyChoice:
                     f"{least_gap(limits):g} mm{refused}",
                     fitting=len(chosen),
                 )
-            faces = sorted((there.faces[k] for k in chosen), key=_azimuth_of_face)
+            faces = [there.faces[k] for k in chosen]
+            faces.sort(key=lambda face: _azimuth(face.T_artefact_patch[:3, 3]))
             made = assembled(self.blank, name, serial, faces, standing, holes)
             broken = [c for c in constraints(made, limits) if c.slack < 0.0]
             blamed = [c.features for c in broken]
@@ -329,10 +330,6 @@ def body_choice(
     return BodyChoice(
         criterion=criterion, blank=blank, tried=tried, rng=rng, room=room, from_side=from_side
     )
-
-
-def _azimuth_of_face(face: FreeformPatch) -> float:
-    return _azimuth(face.T_artefact_patch[:3, 3])
 
 
 def _azimuth(place: Array) -> float:

@@ -95,7 +95,9 @@ def _price(standard: Standard, stock: Stock, construction: Construction) -> Pric
     chips = volume - _milled(standard, construction)
     force = stock.force * (chips * _CM3_PER_MM3 / (_MINUTES * 1e3))  # kW min
     milling = (force.over(rates.POWER)).over(rates.IN_CUT) * (1.0 / _MINUTES)
-    milling = milling + _finishing(standard, construction) + rates.SET_UP * _set_ups(construction)
+    milling = milling + _finishing(standard, construction)
+    # a billet is turned over once and roughed before it is hardened
+    milling = milling + rates.SET_UP * (3.0 if is_billet else 4.0)
     milling = milling + (rates.SEAT * balls if is_billet else rates.TAPPED * balls)
     parts = 0 if is_billet else len(faces) + min(balls, 1)
     hours = {
@@ -129,11 +131,6 @@ def _price(standard: Standard, stock: Stock, construction: Construction) -> Pric
         labour=labour,
         weeks=weeks + _sum(hours.values()).over(rates.HOURS_A_WEEK),
     )
-
-
-def _set_ups(construction: Construction) -> float:
-    """Set-ups on the mill: a billet is turned over once and roughed before it is hardened."""
-    return 3.0 if construction is Construction.BILLET else 4.0
 
 
 def _stock_volume(standard: Standard, construction: Construction) -> float:

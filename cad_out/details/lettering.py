@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from matstd.artefact.body import BLEND, DatumSphere, FreeformPatch, Standard, outline_distance
+from matstd.artefact.body import BLEND, FreeformPatch, Standard, outline_distance
 from matstd.cad_out.details.dot_font import LARGE, SMALL, dots, size
 from matstd.cad_out.details.places import Bore, Side, plan_room
 from matstd.twin.frames import Array, pose
@@ -44,17 +44,14 @@ def lettering_of(
         missing += [] if line else [patch.name]
         out += [line] if line else []
     for sphere in standard.spheres:
-        line = plate.beside(sphere.name, sphere.centre[:2], _widest(sphere))
+        widest = max(sphere.radius, sphere.foot_radius + BLEND)
+        line = plate.beside(sphere.name, sphere.centre[:2], widest)
         missing += [] if line else [sphere.name]
         out += [line] if line else []
     line = plate.beside("DATUM_A", np.array([-1.0, -1.0]) * standard.base.half_size, 20.0, far=90.0)
     missing += [] if line else ["DATUM_A"]
     out += [line] if line else []
     return tuple(out), tuple(missing)
-
-
-def _widest(sphere: DatumSphere) -> float:
-    return max(sphere.radius, sphere.foot_radius + BLEND)
 
 
 def _label(feature: str) -> str:
