@@ -186,7 +186,7 @@ def _result(
     beside = (*added, *final.effects)
     progress(0.8, "what the run could have shown")
     seen = final.library.sample
-    fits = dict.fromkeys((steps[0].fit, last))  # the starting model, and with what it lacks
+    is_cured = verdict is not Verdict.UNEXPLAINED and len(steps) > 1
     ended = (noticed(What.SEARCH_ENDED, sets=MOST_SETS),) if final.is_ended else ()
     return Diagnosis(
         run=task.run,
@@ -200,7 +200,7 @@ def _result(
         structure=start,
         left=left,
         depends_on=depends_on,
-        where=regions(last) if verdict is Verdict.UNEXPLAINED else regions(*fits),
+        where=regions(steps[0].fit, last) if is_cured else regions(last),
         detectable=detectable(seen, final.effects, len(final.library.complement.u)),
         plans=_plans(task, added, classes, gross, rng),
         geometry=geometry,
