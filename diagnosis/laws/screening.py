@@ -29,7 +29,6 @@ DOMAIN_MARGIN = 0.1
 """Share of the range by which the domain of a curve exceeds the values on either side."""
 
 LOOPS = ("hysteresis", "play-quad")  # shapes with a memory, which a curve shows least
-
 FAST_WAVES = 1200  # frequencies up to which sines of a reading are scanned, per range and half
 
 
