@@ -10,24 +10,24 @@ from matstd.progress import Plan
 from matstd.workers import add_scheduler
 
 PLAN: Plan = {
-    "reach": 4.0,
-    "candidates": 3.5,
-    "artefacts of balls": 22.0,
-    "faces": 30.0,
-    "other artefacts": 1.0,
-    "identifiability": 2.0,
-    "probing programs": 0.8,
-    "proof on the twin": 8.0,
-    "visits on the twin": 11.0,
+    "reach": 3.0,
+    "candidates": 2.7,
+    "artefacts of balls": 12.0,
+    "faces": 12.0,
+    "other artefacts": 3.0,
+    "identifiability": 2.5,
+    "probing programs": 0.7,
+    "proof on the twin": 5.0,
+    "visits on the twin": 8.5,
     "maps": 0.1,
-    "STEP and STL": 10.0,
-    "report": 16.0,
+    "STEP and STL": 8.0,
+    "report": 15.0,
 }
-"""Seconds of the stages of a design with rotary axes on two idle cores, the mean of three machines
-(`python benchmarks/progress_estimate.py` measures them again). CAD, times and sheets are made by
-the second core: their stages wait for it."""
+"""Seconds of the stages of a design with rotary axes on two idle cores, by the processor time of two
+machines (`python benchmarks/progress_estimate.py`). CAD, times and sheets are made by the second
+core: their stages wait for it."""
 
-LINEAR_PLAN = {**PLAN, "artefacts of balls": 9.5, "faces": 12.0, "STEP and STL": 17.0}
+LINEAR_PLAN = {**PLAN, "artefacts of balls": 7.0, "faces": 6.0, "STEP and STL": 14.0}
 """The same without a rotary axis, where a standard has no table poses to choose."""
 
 
