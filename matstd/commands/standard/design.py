@@ -23,9 +23,9 @@ PLAN: Plan = {
     "STEP and STL": 8.0,
     "report": 15.0,
 }
-"""Seconds of the stages of a design with rotary axes on two idle cores, by the processor time of two
-machines (`python benchmarks/progress_estimate.py`). CAD, times and sheets are made by the second
-core: their stages wait for it."""
+"""Seconds of the stages of a design with rotary axes on two idle cores, by the processor time of
+two machines (`python benchmarks/progress_estimate.py`). CAD, times and sheets are made by the
+second core: their stages wait for it."""
 
 LINEAR_PLAN = {**PLAN, "artefacts of balls": 7.0, "faces": 6.0, "STEP and STL": 14.0}
 """The same without a rotary axis, where a standard has no table poses to choose."""
