@@ -18,7 +18,9 @@ from matstd.twin.compute import Progress
 if TYPE_CHECKING:
     from rich.console import Console
 
-FIRST = 0.02  # fraction done from which on the pace of this run says how long the whole takes
+TRUSTED_FRACTION = (
+    0.02  # fraction done from which on the pace of this run says how long the whole takes
+)
 WORTH_SHOWING = 0.04  # reported fraction from which on a time left is shown
 
 CAUTION = 0.15
@@ -74,7 +76,7 @@ class TimeLeft:
         rest = max(end - self.position, 0.0)
         if rest == 0.0:
             return self.position
-        is_known = self.position > FIRST
+        is_known = self.position > TRUSTED_FRACTION
         whole = (self.at - self.begun) / self.position if is_known else self.usual
         # towards the end of the stage, ever slower where it takes longer than its share
         return self.position - rest * math.expm1(-(now - self.at) / max(whole * rest, 1e-9))

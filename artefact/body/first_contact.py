@@ -17,7 +17,7 @@ from matstd.twin.frames import Array, Mask, apply, turn, unit
 from matstd.twin.units import NM
 
 _EDGE_PITCH = 0.5  # mm, of the samples of a trimmed edge
-_PIECE = 16  # samples of an edge that share one bounding sphere
+_EDGE_SAMPLES = 16  # samples of an edge that share one bounding sphere
 _NUMBERS_AT_ONCE = 2_000_000  # numbers in memory at once during the search of the edges
 
 
@@ -190,7 +190,7 @@ def _edge_entry(patch: FreeformPatch, p: Array, d: Array, radius: float, latest:
 def _near_in_time(points: Array, p: Array, d: Array, radius: float, latest: Array) -> np.ndarray:
     """Balls that come near a row of points (K, 3), at most one pitch apart, before some travel."""
     near = np.zeros(len(p), dtype=bool)
-    for piece in np.array_split(points, len(points) // _PIECE + 1):
+    for piece in np.array_split(points, len(points) // _EDGE_SAMPLES + 1):
         middle = 0.5 * (piece[0] + piece[-1])
         reach = np.linalg.norm(piece - middle, axis=1).max() + 2.0 * _EDGE_PITCH
         entry = sphere_entry(middle, p, d, float(reach) + radius)

@@ -22,7 +22,7 @@ class KnownFeature:
         return (self.u, self.u, self.u) if self.u_axes is None else self.u_axes
 
 
-GUARD = 1.65
+GUARD_FACTOR = 1.65
 """Guard band in standard uncertainties; decides with 95 % on which side of a limit the true value
 lies (ISO 14253-1:2017)."""
 
@@ -48,14 +48,14 @@ class Verdict:
     @property
     def is_refused(self) -> bool:
         """Whether nonconformity is proven."""
-        return abs(self.deviation) - GUARD * self.u > self.tolerance
+        return abs(self.deviation) - GUARD_FACTOR * self.u > self.tolerance
 
     @property
     def state(self) -> str:
         """Conforming, not conforming, or neither proven."""
         if self.is_refused:
             return "not conforming"
-        is_proven = abs(self.deviation) + GUARD * self.u <= self.tolerance
+        is_proven = abs(self.deviation) + GUARD_FACTOR * self.u <= self.tolerance
         return "conforming" if is_proven else "cannot be decided"
 
 

@@ -13,10 +13,10 @@ from matstd.artefact.certify.reversal import merged_orientations
 from matstd.artefact.certify.task_places import check_places, like_task, that_prove
 from matstd.artefact.certify.true_places import displaced_features
 from matstd.artefact.certify.verdicts import Allowed, CommonCause, with_verdicts
-from matstd.artefact.certify.waviness import GAP
+from matstd.artefact.certify.waviness import MAX_SPACING
 
 __all__ = [
-    "GAP",
+    "MAX_SPACING",
     "Allowed",
     "CalibrationFit",
     "CommonCause",

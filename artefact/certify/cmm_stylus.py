@@ -26,7 +26,7 @@ _MODULE_LENGTH, _HEAD_LENGTH = 50.0, 120.0
 _GAP = 1.0  # between probe and body, mm
 _TILTS = (0.0, 15.0, 30.0, 45.0)
 _TURNS = tuple(np.arange(-180.0, 180.0, 45.0).tolist())
-_DOWN = 6  # heights between a point and the clearance plane
+_HEIGHTS = 6  # heights between a point and the clearance plane
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +63,7 @@ def reaches(standard: Standard, centres: Array, high: float, length: float, angl
         high: Of the clearance plane, mm.
     """
     # upright, what is free below is free above: the probe moves along its own axis
-    count = 1 if angle == UPRIGHT else _DOWN
+    count = 1 if angle == UPRIGHT else _HEIGHTS
     steps = np.linspace(0.0, 1.0, count)[:, None, None]
     above = np.maximum(high + TIP - centres[:, 2], 0.0)[:, None] * np.array([0.0, 0.0, 1.0])
     balls = (centres + steps * above).reshape(-1, 3)

@@ -19,7 +19,7 @@ from matstd.twin.numbers import rms
 _WEIGHTS = np.logspace(-8.0, 4.0, 49)  # of the bending: from no penalty to a plane
 _MOST_USED = 0.8  # of the points: a fit that follows every one shows no noise
 _ROUNDS = 3  # constant after two
-_RIDGE = 1e-12  # of the trace
+_RELATIVE_RIDGE = 1e-12  # of the trace
 _GRID = 3.0  # mm between the places over which the uncertainty of the surface is averaged
 
 
@@ -157,7 +157,7 @@ class _Smooth:
             size: Number of coefficients that make blocks which couple with their neighbours alone.
         """
         gram = csr_array(B.T @ B / B.shape[0])
-        ridge, whole = _RIDGE * float(gram.trace()), Blocks.of(gram, size)
+        ridge, whole = _RELATIVE_RIDGE * float(gram.trace()), Blocks.of(gram, size)
         bending = Blocks.of(penalty, size)
 
         def weighted(weight: float) -> "_Smooth":

@@ -19,7 +19,7 @@ from matstd.artefact.certify.calibration_fit import CalibrationFit
 from matstd.twin.frames import Array, skew
 
 _ON_FACES = 0.5  # of a common offset: largest difference of a face from it
-_FEW = 0.5  # of the balls, below which those of another diameter are the exception
+_MOST_EXCEPTIONS = 0.5  # of the balls, below which those of another diameter are the exception
 _SCALE_GUARD = 3.0 / 1.65
 """Widens the guard band of the scale to three standard uncertainties: its tolerance is far smaller
 than the scatter of balls that conform, of which 1.65 would refuse one piece in twenty."""
@@ -215,7 +215,7 @@ def _cause_of_diameters(diameters: Sequence[Verdict], found: CalibrationFit) -> 
     common = float(np.median(off))
     beside = [replace(v, deviation=v.deviation - 2.0 * common) for v in diameters]
     wrong = [v for v in diameters if v.is_refused]
-    if len(wrong) < _FEW * len(diameters):
+    if len(wrong) < _MOST_EXCEPTIONS * len(diameters):
         fine = [abs(v.deviation) for v in diameters if not v.is_refused]
         largest = 0.5 * max((v.deviation for v in wrong), key=abs)
         names = tuple(v.feature for v in wrong)

@@ -18,10 +18,10 @@ from matstd.twin.frames import Array, Mask
 
 WIDTH_OF_LINE = 0.4  # between the outermost points of one line, across it, mm
 
-GAP = 2.0
+MAX_SPACING = 2.0
 """Largest distance between neighbours of a line, mm: waves of 4 mm are seen."""
 
-SPAN = 0.6  # smallest length of a line, as a share of the face
+MIN_LINE_SHARE = 0.6  # smallest length of a line, as a share of the face
 
 MAX_SHARE_OF_LINES = 0.6
 """Share of the points of a face above which lines are no longer its exception: it was scanned."""
@@ -39,7 +39,7 @@ def dense_lines(uv: Array, half_size: tuple[float, float]) -> Lines:
     on_line = np.zeros(len(uv), dtype=bool)
     seen = []
     for axis in (0, 1):
-        along = _on_lines(uv[:, axis], uv[:, 1 - axis], SPAN * 2.0 * half_size[axis])
+        along = _on_lines(uv[:, axis], uv[:, 1 - axis], MIN_LINE_SHARE * 2.0 * half_size[axis])
         seen.append(bool(along.any()))
         on_line |= along
     if on_line.mean() > MAX_SHARE_OF_LINES:
@@ -57,7 +57,7 @@ def _on_lines(along: Array, across: Array, length: float) -> Mask:
         here = np.abs(across - across[i]) < 0.5 * WIDTH_OF_LINE
         tried |= here
         places = np.sort(along[here])
-        if places[-1] - places[0] >= length and np.diff(places).max() <= GAP:
+        if places[-1] - places[0] >= length and np.diff(places).max() <= MAX_SPACING:
             out |= here
     return out
 

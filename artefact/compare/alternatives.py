@@ -20,7 +20,7 @@ from matstd.twin.frames import Array, IntArray, fixed_xyz, pose
 from matstd.twin.record import Setup
 from matstd.twin.units import DEG
 
-STYLUS = 60.0  # additional length of a second stylus, mm
+STYLUS_EXTENSION = 60.0  # additional length of a second stylus, mm
 
 SETUPS = {
     "a second set-up, turned by 90° about Z": ((0.0, 0.0, 0.0), (0.0, 0.0, 90.0)),
@@ -60,7 +60,7 @@ class Alternative:
 def other_setups(criterion: Criterion) -> dict[str, ProbeReach]:
     """A second stylus length and further set-ups, by name."""
     reach = criterion.reach
-    out = {"a second stylus length": replace(reach, length=reach.length + STYLUS)}
+    out = {"a second stylus length": replace(reach, length=reach.length + STYLUS_EXTENSION)}
     for name, (shift, turn) in SETUPS.items():
         T = reach.setup.T_table_artefact @ pose(fixed_xyz(np.array(turn) * DEG), np.array(shift))
         out[name] = replace(reach, setup=Setup("second", T))

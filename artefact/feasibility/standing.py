@@ -34,7 +34,9 @@ SEAT_TOLERANCE = 1.0
 
 Mesh = tuple[Array, np.ndarray]
 
-_AWAY = 0.5  # cosine between weight and the way out of the seat from which on a standard hangs
+_HANGING_COSINE = (
+    0.5  # cosine between weight and the way out of the seat from which on a standard hangs
+)
 _BALL_BESIDE = 100.0  # a bracket on the table holds a ball so far beside its face, mm
 
 _OVERHANG, _MORE = 40.0, 5.0
@@ -44,12 +46,14 @@ the middle of the table where that is larger: the example has 33.9 mm at its cor
 _SHIFTS = (1.0, 2.0, 5.0, 10.0, 20.0, 30.0, 50.0, 75.0, 100.0, 150.0, 200.0, 300.0, 400.0)
 """Displacements of a clamp that are tried, mm."""
 
-_SIDES = 256  # sides of the polygon round a disc: 0.008 mm outside it at a diameter of 200 mm
+_POLYGON_SIDES = (
+    256  # sides of the polygon round a disc: 0.008 mm outside it at a diameter of 200 mm
+)
 
 _TURNS = ((0.0, 0.0, 0.0), (-90.0, 0.0, 0.0), (90.0, 0.0, 0.0), (0.0, 90.0, 0.0), (0.0, -90.0, 0.0))
 """Orientations of a standard that are tried, degrees."""
 
-_HALVES = 7  # bisections of the distance to the middle of the table: 7 give 1 %
+_BISECTIONS = 7  # bisections of the distance to the middle of the table: 7 give 1 %
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,7 +85,7 @@ def check_seat(brief: Brief) -> None:
     _refuse(brief, None)
     sign, axis = brief.down[0], brief.down[1]
     down = (1.0 if sign == "+" else -1.0) * np.eye(3)["XYZ".index(axis)]
-    if down @ table_face(brief.setup.T_table_artefact)[:3, 2] > _AWAY:
+    if down @ table_face(brief.setup.T_table_artefact)[:3, 2] > _HANGING_COSINE:
         expected = "a direction of weight that does not pull the standard off its seat"
         raise BadFile(brief.path, "standard.down", brief.down, expected)
 
@@ -203,7 +207,7 @@ def _body_faults(brief: Brief, setup: Setup) -> Iterator[Fault]:
         if depth > CONTACT_DEPTH:
             words = f"{body.name} beside the standard: it reaches {depth:.1f} mm into its base"
             yield Fault(key, place, words, way)
-        depth, _ = _penetration(body, table.corners(_SIDES))
+        depth, _ = _penetration(body, table.corners(_POLYGON_SIDES))
         if depth > CONTACT_DEPTH:
             words = f"{body.name} on the table: it reaches {depth:.1f} mm into it"
             yield Fault(key, place, words, np.array([0.0, 0.0, depth]))
@@ -226,7 +230,7 @@ def _penetration(body: Body, other: Array) -> tuple[float, Array]:
     """Depth of a body inside the hull of some corners, mm, and its shortest way out (3,)."""
     if body.mesh is not None:
         return _extent(common_part(*body.mesh, other))
-    met = [overlap(solid.corners(_SIDES), other) for solid in body.solids]
+    met = [overlap(solid.corners(_POLYGON_SIDES), other) for solid in body.solids]
     deepest = max(met, key=lambda one: one.depth)
     return deepest.depth, np.append(deepest.aside, 0.0)
 
@@ -295,7 +299,7 @@ def _distinct(brief: Brief, names: Sequence[str], q: Array) -> Array:
 
 def _common(body: Body, T_face_still: Array, mesh: Mesh) -> Array:
     """Corners (V, 3) of what a turned body has in common with the standard."""
-    own = [body.mesh] if body.mesh else [(s.corners(_SIDES), None) for s in body.solids]
+    own = [body.mesh] if body.mesh else [(s.corners(_POLYGON_SIDES), None) for s in body.solids]
     turned = [(apply(T_face_still, corners), triangles) for corners, triangles in own]
     return np.concatenate([common_part(*mesh, *other) for other in turned])
 
@@ -349,7 +353,7 @@ def _other_seats(brief: Brief, name: str) -> Iterator[tuple[str, Brief]]:
             yield words, _with_setup(brief, k, setup)
     for up in (0.0, height):
         low, high, best = 0.0, 1.0, None  # share of the way that is kept
-        for share in (1.0, 0.0, *[None] * _HALVES):
+        for share in (1.0, 0.0, *[None] * _BISECTIONS):
             share = 0.5 * (low + high) if share is None else share
             place = on_face.copy() if share == 1.0 else np.trunc(share * on_face)
             place[2] = on_face[2] + up

@@ -38,7 +38,7 @@ from matstd.twin.machine import Chain, linear_directions
 from matstd.twin.record import Setup
 from matstd.twin.units import DEG
 
-_RISER = 300.0  # mm above the table to which a change may raise the standard
+_MAX_RISER = 300.0  # mm above the table to which a change may raise the standard
 _POSES = 60  # table poses that are tried
 _PLACES_A_PATCH = 2  # reached, of a few hundred: with fewer, no choice of patches was ever found
 _LOWER_STEP = 10.0  # mm between two heights of a body that are tried
@@ -176,7 +176,7 @@ def _with_overshoot(chain: Chain, poses: Array) -> Array:
 
 def _fits(brief: Brief, wish: Wish) -> bool:
     """Whether a changed project is within reach; few places and poses are checked first."""
-    lifted = replace(brief, riser=max(_RISER, brief.riser))
+    lifted = replace(brief, riser=max(_MAX_RISER, brief.riser))
     if not stands(lifted, wish.reach.setup):
         return False
     grid = poses_within(brief.chain, wish.rotary, brief.options.choice.poses)

@@ -23,7 +23,7 @@ from matstd.artefact.hidden.smooth_effects import (
 from matstd.artefact.worth import Criterion
 from matstd.twin.frames import Array, IntArray
 
-_NONE = 1e-6  # of a square of a signal, for effects that nothing shows yet
+_NEGLIGIBLE_SIGNAL = 1e-6  # of a square of a signal, for effects that nothing shows yet
 
 
 def showing_touches(
@@ -100,7 +100,7 @@ class _Choice:
     def left_after(self) -> Array:
         """Sum of ``1 / signal^2`` after each of the possible touches, (N,)."""
         more = np.add.reduceat(self.left**2, self.first, axis=1) / self.leverage[:, None]
-        return np.asarray(np.sum(1.0 / (self.square + more + _NONE), axis=1))
+        return np.asarray(np.sum(1.0 / (self.square + more + _NEGLIGIBLE_SIGNAL), axis=1))
 
     def take(self, row: int) -> None:
         """Choose a touch."""

@@ -13,7 +13,9 @@ from matstd.artefact.body import Limits, graph_patch
 from matstd.twin.frames import Array
 from matstd.twin.units import DEG
 
-CONTROL = 8  # control heights of a patch in u and v: enough for one wave, too few for ripples
+CONTROL_HEIGHTS = (
+    8  # control heights of a patch in u and v: enough for one wave, too few for ripples
+)
 
 _LIMIT_MARGIN = 1.15
 """Safety factor on the limits of curvature and slope, which are evaluated on grids."""
@@ -46,12 +48,12 @@ def smooth_heights(
         tallest: Largest height above or below its plane, mm.
 
     Returns:
-        Shape (`CONTROL`, `CONTROL`), mm, with mean zero.
+        Shape (`CONTROL_HEIGHTS`, `CONTROL_HEIGHTS`), mm, with mean zero.
     """
-    flat = graph_patch("flat", np.eye(4), half_size, np.zeros((CONTROL, CONTROL)))
+    flat = graph_patch("flat", np.eye(4), half_size, np.zeros((CONTROL_HEIGHTS, CONTROL_HEIGHTS)))
     x, y = flat.poles[..., 0], flat.poles[..., 1]
     slanted = plane[0] * x + plane[1] * y
-    ends = np.linspace(-1.0, 1.0, CONTROL)
+    ends = np.linspace(-1.0, 1.0, CONTROL_HEIGHTS)
     u, v = np.meshgrid(half_size[0] * ends, half_size[1] * ends, indexing="ij")
     size = float(np.mean(half_size))
     bend = rng.uniform(-1.0, 0.6, 2)  # more domes than bowls: every normal of a dome is accessible

@@ -24,7 +24,7 @@ _POLES_PER_WAVE = 9.0  # of the control net: straight flanks need more than a si
 _GRID_MARGIN = 1.03  # on slope and radius: evaluated on a grid of a twentieth of the wave
 _GRID = 20.0  # points of that grid in a wave
 _LEAST_SLOPE = 15.0 * DEG  # of waves that see more than a plane: a quarter of what is across them
-_LOWEST = 10.0  # mm between base and the lowest valley: fillet, and room for the ball
+_VALLEY_CLEARANCE = 10.0  # mm between base and the lowest valley: fillet, and room for the ball
 
 
 @dataclass(frozen=True)
@@ -48,13 +48,13 @@ def wavy_face(name: str, blank: Blank, wave: Wave) -> FreeformPatch:
     """
     heights = _wave_heights(wave, blank.limits)
     rise, base = float(np.abs(heights).max()), blank.base.thickness
-    origin = np.round([*wave.middle, base + _LOWEST + rise], 1)
+    origin = np.round([*wave.middle, base + _VALLEY_CLEARANCE + rise], 1)
     if origin[2] + rise > blank.height:
         raise NotBuildable(
             f"waves of {wave.wavelength:g} mm and {wave.slope / DEG:.0f} degrees rise to "
             f"{origin[2] + rise:.1f} mm, the blank is {blank.height:g} mm high"
         )
-    depth = float(origin[2]) - 0.5 * base + _LOWEST
+    depth = float(origin[2]) - 0.5 * base + _VALLEY_CLEARANCE
     return graph_patch(name, pose(t=origin), wave.half_size, np.round(heights, 6), depth=depth)
 
 

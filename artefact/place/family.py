@@ -36,7 +36,9 @@ class Family(StrEnum):
 MOST_COST = 1.02
 """Largest error over the workspace that a family may leave, relative to the best balls alone."""
 
-PACE = 3.6  # seconds a touch, with its share of the ways: 2.4 to 4.8 as planned for the examples
+SECONDS_PER_TOUCH = (
+    3.6  # seconds a touch, with its share of the ways: 2.4 to 4.8 as planned for the examples
+)
 
 CLEAR_LEAD = 1.05
 """Figure of balls alone, relative to the best family with a face, above which they are built."""
@@ -85,7 +87,7 @@ def score_of(one: FamilyFigures, goal: Goal) -> float:
     if goal == "prove":
         return one.signal
     if goal == "minutes":  # the plan comes later: it differs by as much for all families
-        return one.signal / np.sqrt(PACE * one.touches / MINUTE + one.scan_minutes)
+        return one.signal / np.sqrt(SECONDS_PER_TOUCH * one.touches / MINUTE + one.scan_minutes)
     if goal == "price":
         return 1.0 / one.price.value if one.price is not None else 1.0
     return 1.0 / (one.worst_user if goal == "worst" else one.rms_user)

@@ -52,7 +52,7 @@ _PROVING_COST = 1.35
 _LEAST_HALF = 40.0  # mm, of a face that is worth its block
 _WAVELENGTHS, _FLATNESS = (45.0, 60.0, 80.0), (0.0, 0.9)
 _TURNS = (0.0, 22.5 * DEG)  # against x, tried for the best wave, which is turned by 45 degrees
-_SOME = 3  # every third identifying touch stands for all while waves are compared
+_EVERY_NTH_TOUCH = 3  # every third identifying touch stands for all while waves are compared
 PROOF_POSES = 6  # table poses of the touches on the face
 
 
@@ -130,7 +130,7 @@ def _best_wave(
             f"no wavy face of {2 * _LEAST_HALF:g} mm fits on a base of "
             f"{2 * blank.base.half_size[0]:g} x {2 * blank.base.half_size[1]:g} mm beside balls"
         )
-    poses, given = spread_poses(all_poses, PROOF_POSES), base.touches[::_SOME]
+    poses, given = spread_poses(all_poses, PROOF_POSES), base.touches[::_EVERY_NTH_TOUCH]
     bare = replace(with_spheres(blank, []), spheres=base.balls)
 
     def signal_of(wave: Wave) -> float:

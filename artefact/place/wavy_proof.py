@@ -18,7 +18,7 @@ from matstd.artefact.worth import Criterion
 from matstd.twin.errors import NotReachable
 from matstd.twin.frames import Array, IntArray, apply
 
-AREA = 40.0
+SQUARE_SIDE = 40.0
 """Side of the squares of a face that get equal shares, mm: the width of the widest effect."""
 
 PLACES_PER_TOUCH = 4.0  # places on a wavy face from which each touch is chosen
@@ -85,6 +85,6 @@ def square_of(face: FreeformPatch, point: Array) -> IntArray:
     """Number of the square of a face in which each of some points lies, (N,)."""
     local = apply(face.T_patch_artefact, point)[:, :2]
     half = np.array(face.half_size)
-    count = np.maximum(1, np.round(2.0 * half / AREA)).astype(np.int64)
+    count = np.maximum(1, np.round(2.0 * half / SQUARE_SIDE)).astype(np.int64)
     cell = np.clip(0.5 * (local / half + 1.0) * count, 0, count - 1).astype(np.int64)
     return np.asarray(np.unique(cell @ [count[1], 1], return_inverse=True)[1].reshape(-1))

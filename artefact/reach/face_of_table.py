@@ -9,7 +9,7 @@ import numpy as np
 from matstd.twin.frames import Array, pose
 from matstd.twin.machine import Chain, table_to_tool
 
-_ALONG = 0.7  # cosine above which two directions count as one axis: half a right angle
+_SAME_AXIS_COSINE = 0.7  # cosine above which two directions count as one axis: half a right angle
 _UPRIGHT = ("[0, 90, 0]", "[-90, 0, 0]", "[0, 0, 0]")  # takes z to x, y, z of the table
 _TURNED = {0: (1, 2, 0), 1: (2, 0, 1), 2: (0, 1, 2)}  # coordinate axes that become x, y, z
 
@@ -41,13 +41,17 @@ def hangs(chain: Chain, T_table_artefact: Array) -> bool:
     """
     axis, q = _turns_about(chain), np.zeros((1, len(chain.axes)))
     tool, up = table_to_tool(chain, q)[0, :3, 2], T_table_artefact[:3, 2]
-    return axis is not None and abs(float(axis @ tool)) > _ALONG and float(up @ tool) < -_ALONG
+    return (
+        axis is not None
+        and abs(float(axis @ tool)) > _SAME_AXIS_COSINE
+        and float(up @ tool) < -_SAME_AXIS_COSINE
+    )
 
 
 def standing_remarks(chain: Chain, T_table_artefact: Array) -> tuple[str, ...]:
     """What is taken for granted of the face that carries the standard."""
     axis, face = _turns_about(chain), table_face(T_table_artefact)[:3, 2]
-    if axis is None or abs(float(axis @ face)) > _ALONG:
+    if axis is None or abs(float(axis @ face)) > _SAME_AXIS_COSINE:
         return ()
     upright = _UPRIGHT[int(np.argmax(np.abs(axis)))]
     way = f"{'-' if face.min() < -0.5 else '+'}{'XYZ'[int(np.argmax(np.abs(face)))]}"

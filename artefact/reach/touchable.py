@@ -24,7 +24,7 @@ from matstd.twin.record import Labels, Setup, Touches, linear_approach
 from matstd.twin.units import DEG
 
 _WORDS = "U200"  # of a reason
-_LIFT = 400.0  # mm the ball comes down from, far above any standard
+_START_HEIGHT = 400.0  # mm the ball comes down from, far above any standard
 _DESCENT_MARGIN = 1.0  # mm added to the ball on its way down
 ROUNDING = (
     1e-9  # mm or rad: a reading at the very end of a travel is inside, whatever its last digit
@@ -283,7 +283,9 @@ class ProbeReach:
         """What the ball meets on its way down to the start."""
         up = turn(inverse(self.setup.T_table_artefact), self._retreat(wanted))
         start = wanted.point + (self.radius + self.standoff) * wanted.normal
-        met = contact(standard, start + _LIFT * up, -up, self.radius + _DESCENT_MARGIN, _LIFT)
+        met = contact(
+            standard, start + _START_HEIGHT * up, -up, self.radius + _DESCENT_MARGIN, _START_HEIGHT
+        )
         words = [
             f"on its way down the ball {_met(what, name)}" if what != Meeting.NOTHING else ""
             for what, name in zip(met.meeting, met.feature, strict=True)

@@ -21,7 +21,7 @@ CONTACT_DEPTH = 0.1
 ONE_SETUP = 1.0
 """Distance up to which two set-ups are one, mm, if they are turned by less than a degree."""
 
-_ARC = 17  # corners of the hull on each rounded corner: 0.03 mm inside one of 25 mm
+_CORNER_POINTS = 17  # corners of the hull on each rounded corner: 0.03 mm inside one of 25 mm
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,7 +35,7 @@ class Overlap:
 def base_corners(base: Base, T_table_artefact: Array) -> Array:
     """Corners of the base in the frame of the table's face, (V, 3), the lower half first."""
     (a, b), r = base.half_size, base.corner_radius
-    angle = np.linspace(0.0, 0.5 * np.pi, _ARC)
+    angle = np.linspace(0.0, 0.5 * np.pi, _CORNER_POINTS)
     x, y = a - r + r * np.cos(angle), b - r + r * np.sin(angle)
     xy = np.concatenate([np.column_stack([s * x, t * y]) for s in (1, -1) for t in (1, -1)])
     corners = [np.column_stack([xy, np.full(len(xy), z)]) for z in (0.0, base.thickness)]

@@ -16,11 +16,15 @@ from matstd.twin.units import DEG
 OVERSHOOT = 5.0 * DEG
 """How far before a rotary position the last motion towards it begins, rad."""
 
-_SWING = 25
+_TURN_SAMPLES = 25
 """Samples of every axis that turns in a move: all turn, in no order that is known. Half a turn is
 cut every 7 degrees, between which nothing within 300 mm of an axis rises by 0.6 mm."""
 
-_SWINGS = (9, _SWING, 97)  # samples one after another, until they decide; each has a ninth the rise
+_SWINGS = (
+    9,
+    _TURN_SAMPLES,
+    97,
+)  # samples one after another, until they decide; each has a ninth the rise
 
 
 class SolidHull(NamedTuple):
@@ -125,7 +129,7 @@ def swing_height(
         for samples in _SWINGS:
             met, rise = _swing_maximum(chain, start, end - start, samples, solid, probe, arms)
             highest[i] = met + rise
-            if highest[i] <= allowed or (met > allowed and samples >= _SWING):
+            if highest[i] <= allowed or (met > allowed and samples >= _TURN_SAMPLES):
                 break
     return highest
 

@@ -20,7 +20,7 @@ from matstd.twin.errors import NotReachable
 from matstd.twin.frames import Array, IntArray, Mask
 
 _PLACES = 500  # that are tried; a third of them is barred beside freeform faces
-_MORE = 12  # times as many are drawn where faces bar most of the base
+_OVERDRAW = 12  # times as many are drawn where faces bar most of the base
 _DIRECTIONS = 9  # touches tried on each, at each of the poses
 _POSES = 20  # table poses, spread over the user's
 
@@ -69,7 +69,7 @@ def ball_places(
     Raises:
         NotReachable: The machine reaches no touch on any of them.
     """
-    balls = balls_on_posts(blank, _PLACES * (_MORE if beside else 1), rng)
+    balls = balls_on_posts(blank, _PLACES * (_OVERDRAW if beside else 1), rng)
     if beside:
         free = [ball for ball in balls if faces_beside(beside, [ball], blank).all()]
         balls = [replace(ball, name=f"{i}") for i, ball in enumerate(free[:_PLACES])]

@@ -40,7 +40,7 @@ _PITCHES = (5, 9, 15)  # points each way on a face
 _CANDIDATES_PER_TOUCH = (
     2.0  # touches that can be made, for each that is wanted, on the coarsest grid that will do
 )
-_LOT = 1000  # touches looked at together
+_TOUCHES_PER_BLOCK = 1000  # touches looked at together
 _POSE_CROWDING = 1.6  # even shares of the touches that one table pose may have
 _EDGE = 3.0  # mm a touch stays away from the trimmed edge of a face
 _OVERSHOOT = 6.0 * DEG  # left at the ends of a rotary travel, to approach readings from both sides
@@ -199,7 +199,7 @@ def some_touches(
     tried = tried[rng.permutation(len(tried))]
     found: list[Requests] = []
     lot = min(
-        _LOT, int(2.0 * _CANDIDATES_PER_TOUCH * options.touches)
+        _TOUCHES_PER_BLOCK, int(2.0 * _CANDIDATES_PER_TOUCH * options.touches)
     )  # about half of those drawn can be made
     for rows in blocks(len(tried), lot):
         found.append(tried[rows][criterion.reach.is_clear(standard, tried[rows])])

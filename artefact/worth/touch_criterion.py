@@ -44,7 +44,7 @@ CRITERIA = ("I", "G", "D", "A", "E")
 """What touches can be chosen for, by the letters of optimal design."""
 
 _POSES = 400  # over which predictions are judged, in the probed volume and as many of the user's
-_SCATTER = 3000  # random touches that span all that touches can show
+_SPANNING_TOUCHES = 3000  # random touches that span all that touches can show
 _ROWS_A_BLOCK = 4000  # of 71 columns: 2 MiB, held beside what is made of them
 
 
@@ -191,7 +191,7 @@ def criterion_for(
     tips = [model.tip_columns(poses) for poses in at]
     prior_sd = _with_free_setup(model)
     # touches all over the probed volume stand for those of a standard that does not exist yet
-    scatter = random_touches(reach, volume, rotary, _SCATTER, rng)
+    scatter = random_touches(reach, volume, rotary, _SPANNING_TOUCHES, rng)
     free = reach.touches(scatter)
     W = whitened(model.columns(free), prior_sd, noise)
     G = np.concatenate(tips)

@@ -13,7 +13,7 @@ from matstd.twin.sampling import grid_points
 
 _OF_SIDE = 0.37  # of the plate's thickness, that letters on a side take: two lines have room
 _TEXT_MARGIN = 1.5  # mm round a line of text
-_AWAY = 14.0  # mm from a body that its number may stand
+_MAX_DISTANCE = 14.0  # mm from a body that its number may stand
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,7 +129,7 @@ class _Plate:
         self.taken = [(np.array(bore.mouth[:2]), np.full(2, bore.radius)) for bore in upright]
 
     def beside(
-        self, feature: str, middle: Array, widest: float, far: float = _AWAY
+        self, feature: str, middle: Array, widest: float, far: float = _MAX_DISTANCE
     ) -> Lettering | None:
         """Text as near to a body as there is room, or None."""
         text = _label(feature)

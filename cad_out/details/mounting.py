@@ -20,7 +20,7 @@ RELIEF = 1.0
 RELIEF_RADIUS = 3.0  # of the inner edge between a pad and the relief, mm
 _PAD_RIM = 4.0  # mm that a pad is wider than the counterbore above it
 _BESIDE_PAD = 1.5  # mm of relief between a pad's flank and the outline, at least
-_TENTH = 0.05  # mm of radius: the diameter of a pad is in tenths
+_RADIUS_STEP = 0.05  # mm of radius: the diameter of a pad is in tenths
 _IN_NUT = 1.5  # of its diameter that a screw reaches into the nut of the slot
 _SCREWS = (  # ISO 4762 and ISO 273, medium: diameter, through hole, head, mm
     (4.0, 4.5, 7.0),
@@ -75,7 +75,7 @@ def pads_of(standard: Standard, sides: Iterable[Side]) -> tuple[Pad, ...]:
         room = [-float(outline_distance(at[None], base.half_size, base.corner_radius)[0])]
         room += [side.offset - float(at @ side.normal) for side in sides]
         widest = min(room) - relief_profile(0.0)[0] - _BESIDE_PAD
-        widest = np.floor(widest / _TENTH) * _TENTH
+        widest = np.floor(widest / _RADIUS_STEP) * _RADIUS_STEP
         out.append(Pad(f"SEAT{i}", hole.x, hole.y, min(hole.bore_radius + _PAD_RIM, float(widest))))
     return tuple(out)
 

@@ -18,8 +18,8 @@ from matstd.twin.units import DEG
 HALF_ANGLES = (45.0 * DEG, 60.0 * DEG, 70.0 * DEG)
 """Of countersinks that are sold (90, 120 and 140 degrees); the steepest centres best."""
 
-_GLUED = 0.12  # of the ball's radius, from the circle of contact to the rim of the post
-_LAND = 0.04  # of the ball's radius, width of the ring on top of the post
+_GLUE_WIDTH_SHARE = 0.12  # of the ball's radius, from the circle of contact to the rim of the post
+_LAND_WIDTH_SHARE = 0.04  # of the ball's radius, width of the ring on top of the post
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +47,7 @@ def seat_of(sphere: DatumSphere) -> Seat:
     """
     R, centre = sphere.radius, float(sphere.centre[2])
     rim = R * np.cos(sphere.rim)
-    half = next((a for a in HALF_ANGLES if R * np.cos(a) <= rim - _GLUED * R), None)
+    half = next((a for a in HALF_ANGLES if R * np.cos(a) <= rim - _GLUE_WIDTH_SHARE * R), None)
     if half is None:
         raise NotBuildable(
             f"{sphere.name}: a post of {sphere.stem_radius:g} mm radius is too thin for the seat "
@@ -55,7 +55,7 @@ def seat_of(sphere: DatumSphere) -> Seat:
         )
     circle, height = R * np.cos(half), centre - R * np.sin(half)
     taper = (sphere.foot_radius - sphere.stem_radius) / (centre - sphere.foot)
-    land, rise = _LAND * R, 1.0 / np.tan(half)
+    land, rise = _LAND_WIDTH_SHARE * R, 1.0 / np.tan(half)
     # the outer cone less the land, and the countersink, at one height
     widest = sphere.stem_radius + taper * centre - land
     top = (height + rise * (widest - circle)) / (1.0 + rise * taper)

@@ -11,7 +11,7 @@ from matstd.twin.errors import DesignError, NotBuildable
 
 REFUSAL = "refusal.txt"  # file in the shared folder that holds the reason of a refusal
 
-HANG = 3600.0
+HUNG_AFTER = 3600.0
 """Seconds after which the kernel counts as hung: forty times what it needs, for a busy machine."""
 
 _CALL = """\
@@ -85,7 +85,9 @@ def run_apart(
     return Ending(done.returncode, reason, lines[-1] if lines else "")
 
 
-def run_kernel(task: str, folder: Path, *arguments: float | str, timeout: float = HANG) -> None:
+def run_kernel(
+    task: str, folder: Path, *arguments: float | str, timeout: float = HUNG_AFTER
+) -> None:
     """Run one task of `matstd.cad_out.kernel.worker` in a process of its own.
 
     Args:

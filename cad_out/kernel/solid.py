@@ -42,7 +42,7 @@ from matstd.twin.errors import NotBuildable
 from matstd.twin.frames import Array, apply
 
 _FACE_TOLERANCE = 1e-7  # mm, of the kernel's own edges
-_ROOT = 2.0  # mm a post goes on into the base, so that no two faces coincide
+_POST_DEPTH = 2.0  # mm a post goes on into the base, so that no two faces coincide
 _ON = 1e-5  # mm: an edge lies on an outline
 
 
@@ -140,10 +140,10 @@ def column_solid(patch: FreeformPatch, surface: Any, base: Base) -> Any:
 def _post(sphere: DatumSphere, seat: Seat) -> Any:
     """Cone up to the land round the seat, continued into the base with the same taper."""
     taper = (sphere.foot_radius - sphere.stem_radius) / (sphere.centre[2] - sphere.foot)
-    low = sphere.foot - _ROOT
+    low = sphere.foot - _POST_DEPTH
     profile = [
         (0.0, low),
-        (sphere.foot_radius + _ROOT * taper, low),
+        (sphere.foot_radius + _POST_DEPTH * taper, low),
         (seat.top_radius, seat.top),
         (seat.rim_radius, seat.top),
         (0.0, seat.bottom),

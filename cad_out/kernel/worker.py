@@ -38,7 +38,7 @@ SCENES = ("standard.3mf", "standard.glb")
 
 _SCREW_CHORD = 0.05  # mm
 _ROUNDS = 3  # of meshes before the last is refused; the first one keeps the chord as a rule
-_FINER = 0.7  # of the last
+_REFINEMENT_FACTOR = 0.7  # of the last
 
 
 def build(folder: str, chord: float, author: str, organisation: str) -> None:
@@ -156,7 +156,7 @@ def _mesh(standard: Standard, solid: Solid, chord: float) -> tuple[Mesh, float]:
         worst = max(farthest, *errors.values())
         if worst <= chord:
             return mesh, farthest
-        asked *= _FINER
+        asked *= _REFINEMENT_FACTOR
     raise NotBuildable(
         f"the mesh stays {worst * 1e3:.1f} µm from the surface, asked were {chord * 1e3:.1f} µm"
     )

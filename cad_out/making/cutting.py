@@ -23,7 +23,7 @@ LONGER = (80.0, 100.0, 120.0)  # overhangs that are tried where the usual one is
 CUTTERS = (20.0, 16.0, 12.0, 10.0, 8.0, 6.0)  # diameters of ball-end mills, mm
 TILTS = (15.0 * DEG, 30.0 * DEG, 45.0 * DEG)  # of the cutter's axis
 _HOLDER = ((60.0, 13.5), (130.0, 25.0))  # mm from the ball's centre, radius: a shrink-fit holder
-_LONG = 220.0  # mm from the ball's centre to what is beside the spindle
+_SPINDLE_DISTANCE = 220.0  # mm from the ball's centre to what is beside the spindle
 _SHARE = 0.8  # of the least concave radius that a cutter may have
 _SLACK = 0.1  # mm by which a shank that runs along a wall may seem to be in it
 _AZIMUTHS = 8
@@ -168,7 +168,7 @@ def is_free(
     other = np.cross(axis, side)
     free = np.ones(len(centre), dtype=bool)
     pieces = [(RADIUS, overhang, RADIUS, 8.0)]
-    ends, out = [*(begin for begin, _ in _HOLDER[1:]), _LONG], overhang - OVERHANG
+    ends, out = [*(begin for begin, _ in _HOLDER[1:]), _SPINDLE_DISTANCE], overhang - OVERHANG
     pieces += [
         (low + out, high + out, r, 12.0) for (low, r), high in zip(_HOLDER, ends, strict=True)
     ]

@@ -20,7 +20,7 @@ from matstd.twin.frames import Array
 from matstd.twin.sampling import grid_points
 
 GRAVITY = 9.81e3  # in mm/s^2
-_FILLED = 0.02  # of a cube, below which it is left out
+_MIN_FILLING = 0.02  # of a cube, below which it is left out
 _TO_TIP = 0.25  # of a cantilever's mass that swings with its end: 33/140, rounded up
 _SHARE = 0.2  # of a displacement, its standard uncertainty: beams within 8 %, screws idealised
 _BESIDE = (
@@ -159,7 +159,7 @@ def _cells(standard: Standard, side: float) -> tuple[Array, Array]:
     parts += [column.distance(middle) for column in standard.columns.values()]
     distance = np.min(parts, axis=0)
     share = np.clip(0.5 - distance / side, 0.0, 1.0)
-    return cells[share > _FILLED], share[share > _FILLED]
+    return cells[share > _MIN_FILLING], share[share > _MIN_FILLING]
 
 
 def _tip_mass(ball: DatumSphere, standard: Standard) -> float:

@@ -13,7 +13,7 @@ from matstd.twin.numbers import distinct_rows
 
 WELD = 1e-6  # corners nearer than this are one corner, mm
 _ON_SURFACE = 0.1  # mm, coarser than any mesh made here
-_ALIKE = 0.9  # cosine between a triangle's and a surface's normal
+_SAME_NORMAL_COSINE = 0.9  # cosine between a triangle's and a surface's normal
 
 # Where the distance of a triangle from its surface is measured: corners of a lattice of order 4
 # without the triangle's own corners, which the kernel puts on the surface.
@@ -256,7 +256,7 @@ def owners(standard: Standard, corners: Array, triangles: np.ndarray) -> np.ndar
             uv = apply(surface.T_patch_artefact, middle[near])[:, :2]
         else:
             uv = surface.project(middle[near])
-        alike = np.einsum("ni,ni->n", facing[near], surface.normal(uv)) > _ALIKE
+        alike = np.einsum("ni,ni->n", facing[near], surface.normal(uv)) > _SAME_NORMAL_COSINE
         owner[near[alike]] = surface.name
     return owner
 

@@ -53,7 +53,7 @@ ASPECT_LIMIT = 20.0
 """Longest side of a triangle over the height on it: where programs for finite elements begin to
 warn, and far from where 32-bit corners (15 nm at 400 mm) turn the normals of an STL."""
 
-_SHARP = 0.6  # rad between two triangles; those of a blend are half as far apart
+_SHARP_EDGE_ANGLE = 0.6  # rad between two triangles; those of a blend are half as far apart
 
 
 @dataclass(frozen=True, slots=True)
@@ -258,7 +258,7 @@ def _sharp(standard: Standard, details: Details, corners: Array, triangles: np.n
     """Length of sharp inner edges outside bores, mm; 0 where columns lean and have no blends."""
     if not _is_upright(standard):
         return 0.0
-    middle, length = inner_folds(corners, triangles, _SHARP)
+    middle, length = inner_folds(corners, triangles, _SHARP_EDGE_ANGLE)
     inside = np.zeros(len(middle), dtype=bool)
     for hole in standard.holes:
         inside |= np.hypot(middle[:, 0] - hole.x, middle[:, 1] - hole.y) < hole.bore_radius + 0.1

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from asyncua.common.node import Node
     from asyncua.server.server import Server
 
-SWITCH = 0.0005
+SWITCH_INTERVAL = 0.0005
 """After which a thread that works out tables or uncertainties gives way, s; Python's own 5 ms would
 be waited for at every answer."""
 
@@ -32,7 +32,7 @@ def prompt() -> Iterator[None]:
     looks through for tens of milliseconds.
     """
     before = sys.getswitchinterval()
-    sys.setswitchinterval(SWITCH)
+    sys.setswitchinterval(SWITCH_INTERVAL)
     gc.collect()
     gc.freeze()
     try:
@@ -46,7 +46,7 @@ NAMESPACE = "urn:material-standard:compensation"
 """Namespace of the nodes."""
 
 OUTPUT_PERIOD = 0.005  # time between two outputs without a request, s
-MOVING = 0.002  # the same while a correction is moving
+SWITCH_INTERVAL_MOVING = 0.002  # the same while a correction is moving
 _KNOWN_EVERY = 1.0  # s, uncertainty: it changes slowly and takes longer than a correction
 
 
@@ -95,7 +95,9 @@ async def serve(
                 written.clear()
                 lag = await nodes.exchange(service)
                 with suppress(TimeoutError):
-                    await asyncio.wait_for(written.wait(), MOVING if lag else OUTPUT_PERIOD)
+                    await asyncio.wait_for(
+                        written.wait(), SWITCH_INTERVAL_MOVING if lag else OUTPUT_PERIOD
+                    )
             await slow
     finally:
         await server.stop()

@@ -7,7 +7,7 @@ from matstd.compensation.service.point_correction import Point
 from matstd.twin.errors import BadValue
 from matstd.twin.units import UM
 
-_LONGEST = 0.05  # s that one step may stand for: a pause is no licence to jump
+_MAX_STEP_TIME = 0.05  # s that one step may stand for: a pause is no licence to jump
 
 
 class Quality(StrEnum):
@@ -72,7 +72,7 @@ class Output:
 
     def step(self, now: float) -> Sent:
         """What is given to the control at this moment."""
-        passed = 0.0 if self._now is None else min(max(now - self._now, 0.0), _LONGEST)
+        passed = 0.0 if self._now is None else min(max(now - self._now, 0.0), _MAX_STEP_TIME)
         self._now = now
         age = float("inf") if self._asked is None else now - self._asked
         most, far = self.limits.most, self.limits.rate * passed

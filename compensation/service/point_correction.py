@@ -31,7 +31,7 @@ Six = tuple[float, ...]
 Columns = list[Point]
 
 _STEPS = 2  # of the inverse: the first leaves some 1e-4 of an error, the second 1e-8
-_BESIDE = 1e-9  # mm or rad by which a reading may lie beyond its travel
+_TRAVEL_TOLERANCE = 1e-9  # mm or rad by which a reading may lie beyond its travel
 
 
 class _Source(NamedTuple):
@@ -154,7 +154,7 @@ class PointCorrection:
     def _check(self, readings: Sequence[float]) -> None:
         for value, link in zip(readings, self._links, strict=True):
             low, high = link.range
-            if not low - _BESIDE <= value <= high + _BESIDE:
+            if not low - _TRAVEL_TOLERANCE <= value <= high + _TRAVEL_TOLERANCE:
                 word = "degrees" if link.kind == "rotary" else "mm"
                 travel = f"{low / link.unit:g} to {high / link.unit:g}"
                 found = f"{link.name} {value / link.unit:g} {word}"
@@ -274,7 +274,7 @@ def _errors(sources: tuple[_Source, ...], q: Sequence[float], signs: Sequence[in
 def _from(source: _Source, q: Sequence[float], signs: Sequence[int]) -> Six:
     cells = source.cells.get(0 if source.turn < 0 else int(signs[source.turn]))
     if cells is None:
-        return _NOTHING
+        return _NO_CORRECTION
     if not source.axes:
         return cells[0][0]
     i, f = _cell(source, 0, q)
@@ -296,7 +296,7 @@ def _from(source: _Source, q: Sequence[float], signs: Sequence[int]) -> Six:
     return tuple(s * a[k] + t * b[k] + u * c[k] + v * d[k] for k in range(6))
 
 
-_NOTHING: Six = (0.0,) * 6
+_NO_CORRECTION: Six = (0.0,) * 6
 
 
 def _cell(source: _Source, k: int, q: Sequence[float]) -> tuple[int, float]:

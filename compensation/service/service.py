@@ -101,7 +101,7 @@ def _moved(live: LiveDrift, touches: Touches) -> Array:
 DRIVEN_EVERY = 2.0
 """Between two looks at temperatures, s: bodies are slower, and tables are made again."""
 
-_BESIDE = 1.0  # mm on either side, between which a slope is taken
+_SLOPE_STEP = 1.0  # mm on either side, between which a slope is taken
 
 
 Line = tuple[Point, Point, Point]
@@ -272,7 +272,7 @@ class Service:
         chain, slopes, at = self.errors.chain, [], []
         for k, name in enumerate(self.correction.linear_axes):
             column, (low, high) = chain.axis_index(name), chain.link(name).range
-            ends = max(q[column] - _BESIDE, low), min(q[column] + _BESIDE, high)
+            ends = max(q[column] - _SLOPE_STEP, low), min(q[column] + _SLOPE_STEP, high)
             there = [[*q[:column], end, *q[column + 1 :]] for end in ends]
             before, after = (self.correction.at(other, signs)[k] for other in there)
             slopes.append((after - before) / max(ends[1] - ends[0], 1e-9))

@@ -84,7 +84,7 @@ MAX_INTERPOLATION = 2.0 * NM
 _POSES = 12  # random ones at which an effect is asked on what it depends
 _FEWEST_PLACES = 17  # points of a table along a reading
 _MOST = {1: 4097, 2: 513}  # most points, by the number of readings
-_SAME = 1e-15  # mm or rad: by which an error differs that does not depend on a reading
+_INDEPENDENT = 1e-15  # mm or rad: by which an error differs that does not depend on a reading
 
 Terms = list[tuple[Effect, Array]]
 
@@ -249,7 +249,7 @@ def _later(errors: MachineErrors) -> State:
 
 
 def _differs(a: Array, b: Array) -> bool:
-    return bool(np.abs(a - b).max() > _SAME)
+    return bool(np.abs(a - b).max() > _INDEPENDENT)
 
 
 def _twist(

@@ -21,7 +21,7 @@ from matstd.twin.machine import inverse_linear
 from matstd.twin.model import Model, columns
 from matstd.twin.record import Instrument, Touches
 
-DRAWN = 1000
+OTHER_PLACES = 1000
 """Touches at other places, at least: their mean variance is known within a few per cent."""
 
 MIN_BLOCKS = 3
@@ -30,7 +30,7 @@ MIN_BLOCKS = 3
 ON_STANDARD = (Instrument.TOUCH_PROBE, Instrument.CMM, Instrument.BALL_BAR)
 """Instruments whose points are of a body that is placed as a whole."""
 
-LINEAR = 3  # linear axes that bring the tool to any point
+LINEAR_AXES = 3  # linear axes that bring the tool to any point
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +61,7 @@ def promise(fit: Fit) -> Promise:
     worst = found[0].ratio if found else 1.0
     touches, m = fit.run.touches, len(fit.model.parameters)
     variances = []
-    for _ in range(1 + DRAWN // len(touches)):
+    for _ in range(1 + OTHER_PLACES // len(touches)):
         there = other_places(touches, rng)
         u = fit.u * fit.weight
         variances.append(machine_variance(there, fit.model, fit.spread[:m], u))
@@ -95,7 +95,7 @@ def other_places(touches: Touches, rng: np.random.Generator) -> Touches:
     chain = touches.chain
     q = (touches.q if touches.commanded is None else touches.commanded).copy()
     poses = _labels(touches, touches.pose)
-    is_standing = touches.instrument in ON_STANDARD and len(chain.linear_axes) == LINEAR
+    is_standing = touches.instrument in ON_STANDARD and len(chain.linear_axes) == LINEAR_AXES
     moved = chain.rotary_axes if is_standing else chain.axes
     for k in map(chain.axis_index, moved):
         q[:, k] = _elsewhere(q[:, k], poses, rng)
@@ -104,7 +104,7 @@ def other_places(touches: Touches, rng: np.random.Generator) -> Touches:
         return replace(there, point=there.ball_artefact - touches.radius[:, None] * touches.normal)
     setups, point = _labels(touches, np.zeros_like(touches.pose)), touches.point_table
     if setups.max() + 1 >= MIN_BLOCKS:
-        point = np.column_stack([_elsewhere(point[:, k], setups, rng) for k in range(LINEAR)])
+        point = np.column_stack([_elsewhere(point[:, k], setups, rng) for k in range(LINEAR_AXES)])
     target = point + touches.radius[:, None] * touches.normal_table
     return replace(touches, q=inverse_linear(chain, target, q, touches.target), commanded=None)
 

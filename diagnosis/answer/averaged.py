@@ -19,7 +19,7 @@ from matstd.diagnosis.answer.steps import Step, left_by
 from matstd.diagnosis.evidence import ScaledEffect
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.regression import GrossErrors
-from matstd.diagnosis.search import FREEDOM, DiagnosisTask
+from matstd.diagnosis.search import FOUND_PRIOR_FACTOR, DiagnosisTask
 from matstd.twin.frames import Array
 from matstd.twin.model import Effect, columns, original_of, traits
 from matstd.twin.numbers import rms
@@ -77,7 +77,7 @@ def _size(effect: Effect, explained: Array, touches: Touches) -> float:
     """Scale of the prior of an effect that explains a deviation (N,) by itself."""
     theta = np.linalg.lstsq(columns([effect], touches), explained, rcond=None)[0]
     size = rms(theta / np.array([p.sd for p in effect.parameters]))
-    return max(size, 1e-6) / FREEDOM
+    return max(size, 1e-6) / FOUND_PRIOR_FACTOR
 
 
 def _different(members: Sequence[Rival], there: Touches) -> Iterator[Rival]:

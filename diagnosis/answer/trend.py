@@ -22,7 +22,7 @@ from matstd.diagnosis.geometry import (
     with_changes,
 )
 from matstd.diagnosis.policy import POLICY
-from matstd.diagnosis.search import FREEDOM, DiagnosisTask
+from matstd.diagnosis.search import FOUND_PRIOR_FACTOR, DiagnosisTask
 from matstd.twin.model import Effect, Model, columns, original_of, traits
 from matstd.twin.numbers import rms
 
@@ -202,7 +202,7 @@ def _fit(task: DiagnosisTask, free: "Diagnosis", since: Iterable[int]) -> Fit:
     """The runs beside the effects that were found, with changes of the geometry since some."""
     changes = changing_since(task, sorted(since))
     model = Model(task.model.chain, (*changes.model.effects, *free.found))
-    prior = changes.prior.joined(Prior.of_effects(free.found).widened(FREEDOM))
+    prior = changes.prior.joined(Prior.of_effects(free.found).widened(FOUND_PRIOR_FACTOR))
     return fit_run(task.run, model, prior, gross=free.fit.gross, memory=free.fit.memory)
 
 

@@ -8,7 +8,7 @@ come from, steps with their date, or a drift with its rate.
 from matstd.diagnosis.charts.chart import ControlChart, LimitSource, Segment
 from matstd.diagnosis.charts.course import ALPHA, Drift, Step
 from matstd.diagnosis.charts.history_file import history_csv, history_table
-from matstd.diagnosis.charts.machine_history import FEWEST, History, history
+from matstd.diagnosis.charts.machine_history import MIN_OCCASIONS, History, history
 from matstd.diagnosis.charts.occasion import (
     Charted,
     Occasion,
@@ -19,7 +19,7 @@ from matstd.diagnosis.charts.occasion import (
 
 __all__ = [
     "ALPHA",
-    "FEWEST",
+    "MIN_OCCASIONS",
     "Charted",
     "ControlChart",
     "Drift",

@@ -12,7 +12,7 @@ from matstd.twin.errors import DesignError, NotEnoughData
 from matstd.twin.frames import Array
 from matstd.twin.units import DAY
 
-FEWEST = 3
+MIN_OCCASIONS = 3
 """Occasions from which there is a chart; two are compared by a diagnosis of both."""
 
 SAME_FEATURE_WITHIN = 1.0
@@ -57,10 +57,10 @@ def history(occasions: Sequence[Occasion]) -> History:
         NotEnoughData: Fewer occasions than a chart needs.
         DesignError: Another machine or standard, or one measurement twice.
     """
-    if len(occasions) < FEWEST:
+    if len(occasions) < MIN_OCCASIONS:
         raise NotEnoughData(
-            f"{len(occasions)} occasion{'s' * (len(occasions) != 1)}, expected at least {FEWEST}; "
-            "two runs are compared by matstd diagnose FIRST.csv SECOND.csv"
+            f"{len(occasions)} occasion{'s' * (len(occasions) != 1)}, expected at least "
+            f"{MIN_OCCASIONS}; two runs are compared by matstd diagnose FIRST.csv SECOND.csv"
         )
     dates = [one.date for one in occasions if one.date is not None]
     is_dated = len(set(dates)) == len(occasions)
@@ -86,7 +86,7 @@ def history(occasions: Sequence[Occasion]) -> History:
 def _charted(occasions: Sequence[Occasion]) -> Iterable[Charted]:
     """Quantities that enough occasions determine, in the order of the first that has them."""
     every = dict.fromkeys(key for one in occasions for key in one.values)
-    return [k for k in every if sum(k in one.values for one in occasions) >= FEWEST]
+    return [k for k in every if sum(k in one.values for one in occasions) >= MIN_OCCASIONS]
 
 
 def _first_what_changed(chart: ControlChart) -> tuple[bool, float]:

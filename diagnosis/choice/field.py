@@ -13,7 +13,7 @@ from scipy.linalg import cho_factor, cho_solve
 from matstd.diagnosis.evidence import ResidualSpace, ScaledEffect
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.regression import GrossErrors
-from matstd.diagnosis.search import FREEDOM, DiagnosisTask
+from matstd.diagnosis.search import FOUND_PRIOR_FACTOR, DiagnosisTask
 from matstd.twin.frames import Array, IntArray
 from matstd.twin.model import Effect
 
@@ -51,10 +51,10 @@ def sized_field(
     quiet = _quietest(blocks, model)
     errors = [_left_out(blocks, model, quiet, float(size)) for size in PRIOR_SIZES]
     size = float(PRIOR_SIZES[int(np.argmin(errors))])
-    sized = ScaledEffect(warm, size / FREEDOM)
+    sized = ScaledEffect(warm, size / FOUND_PRIOR_FACTOR)
     for _ in range(NOISE_PASSES):
         noise = task.fit((*added, sized), gross).noise.factor / base.noise.factor
-        sized = ScaledEffect(warm, size / FREEDOM * noise / quiet)
+        sized = ScaledEffect(warm, size / FOUND_PRIOR_FACTOR * noise / quiet)
     return sized
 
 

@@ -15,7 +15,7 @@ from matstd.twin.numbers import significant
 from matstd.twin.units import DEG
 
 POINTS = 41  # points of a curve: a tenth of its domain has three
-BEYOND = 0.3  # share of its domain by which a curve is shown beyond it on either side
+EXTENSION = 0.3  # share of its domain by which a curve is shown beyond it on either side
 _OF_VARIABLE = {"rad": ("deg", DEG)}  # unit of a variable in files, and one of it in the base unit
 
 
@@ -70,7 +70,7 @@ def _curves(law: Law, theta: Array, covariance: Array) -> list[dict[str, Any]]:
         return []
     first = 0 if k == 0 else len(law.factors[0].shape.places)
     low, high, length, size = law.places[first : first + 4]
-    margin = BEYOND * (high - low)
+    margin = EXTENSION * (high - low)
     x = np.linspace(low - margin, high + margin, POINTS)
     S = np.stack(factor.shape.values(x, low, high, length, size), axis=1)
     x_unit, per = _OF_VARIABLE.get(factor.driver.unit, (factor.driver.unit, 1.0))

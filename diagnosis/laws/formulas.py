@@ -35,7 +35,7 @@ ROUNDED = {"window": "plateau", "ramp": "saturation"}
 
 MOST_STEPS = 400  # most evaluations of a refinement
 
-OUTSIDE = 0.25
+MAX_OUTSIDE = 0.25
 """Share of the range of a variable by which a place may lie outside it: the flank of a bump whose
 top is farther away says little of that top."""
 
@@ -360,7 +360,7 @@ def _is_allowed(law: Law, places: Sequence[float], ranges: Sequence[tuple[float,
     spans = [high - low for low, high in ranges]
     for (name, value), (low, high), span in zip(named.items(), ranges, spans, strict=True):
         base = name.split("-")[0]
-        outside = OUTSIDE * span
+        outside = MAX_OUTSIDE * span
         if base in ("x0", "x1", "x2") and not low - outside < value < high + outside:
             return False
         if base in ("w", "wa", "wb") and abs(value) < 2e-3 * span:

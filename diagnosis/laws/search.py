@@ -46,7 +46,7 @@ MIN_SHARE_SINGLE, MIN_SHARE_PAIR = 0.4, 0.6
 
 MIN_GAIN_PAIR = 3.0  # log evidence that a second variable must add to a curve
 
-CLEAR = 5.0
+CLEAR_EVIDENCE = 5.0
 """Log evidence by which a formula of one shape is so much better than the curve that no product of
 two shapes of that variable is looked for."""
 
@@ -54,7 +54,7 @@ UNUSUAL = ("power", "saturation", "dead-band", "pulse", "saw", "quad-about", "pl
 """Shapes that are charged for being met seldom."""
 
 DRIFT = "time"  # variable of an unrecorded driver, of which only smoothness in time is assumed
-QUICK = 8.0  # periods within the range from which a sine is quick
+QUICK_PERIODS = 8.0  # periods within the range from which a sine is quick
 PER_DRIVER = 3  # most carriers of one variable among them: others would crowd out a second variable
 
 ROUGH, MODULATED = 12, 2
@@ -110,7 +110,7 @@ def search_law(space: Space, ground: Ground, policy: LawPolicy) -> Searched:
         found += single_formulas(space, grids, f.bearer, f.drivers[0], 4)
     found += _rough(space, grids)
     best = max((c.score for c in found), default=-np.inf)
-    if has_products and best < one[0].evidence + CLEAR:
+    if has_products and best < one[0].evidence + CLEAR_EVIDENCE:
         for f in _worth(one, two, MIN_SHARE_SINGLE, TOP_SQUARES):
             found += product_formulas(space, grids, f.bearer, (f.drivers[0], f.drivers[0]), SQUARES)
     for f in _worth(_gaining(two, one), one, MIN_SHARE_PAIR, TOP_PAIRS):
@@ -224,7 +224,7 @@ def _charged(one: Candidate, field: Field, policy: LawPolicy) -> Candidate:
             charge += policy.quick
         if factor.shape.word == "sine":
             period = one.law.tuning["period"]
-            charge += policy.quick * (np.ptp(field.x[factor.driver.name]) > QUICK * period)
+            charge += policy.quick * (np.ptp(field.x[factor.driver.name]) > QUICK_PERIODS * period)
     return replace(one, score=one.score - float(charge))
 
 

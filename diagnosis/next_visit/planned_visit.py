@@ -30,7 +30,7 @@ SIZES, OFFERED_EACH = ((16, 128), (32, 256)), 24
 """Poses that are offered and touches of the plan: an hour on the machine, or two where an hour
 decides nothing; and touches that are offered at every pose."""
 
-EVENLY = 0.25
+SPREAD_SHARE = 0.25
 """Share of the touches that is spread over all poses whatever the rivals predict: the new set-ups
 are located by them, and a law that is none of the rivals shows there."""
 
@@ -199,7 +199,7 @@ def _picked(predicted: Sequence[Predicted], seen: Mask, touches: int, offered: i
     """Rows of the plan in their order: those that separate, and some at every pose."""
     own, *others = predicted
     served = [one for one, is_seen in zip(others, seen, strict=True) if is_seen] or others
-    evenly = np.unique(np.linspace(0, offered - 1, int(EVENLY * touches)).astype(int))
+    evenly = np.unique(np.linspace(0, offered - 1, int(SPREAD_SHARE * touches)).astype(int))
     best = greedy(own, served, touches - len(evenly))
     return np.unique(np.concatenate([evenly, np.array(best, dtype=np.int64)]))
 

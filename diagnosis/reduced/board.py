@@ -22,7 +22,7 @@ from matstd.diagnosis.laws import Learning
 from matstd.diagnosis.reduced.base import Base
 from matstd.diagnosis.reduced.matrices import Errors, Reduced, reduced
 from matstd.diagnosis.reduced.switches import Switch, fixed, switch
-from matstd.diagnosis.search import FREEDOM
+from matstd.diagnosis.search import FOUND_PRIOR_FACTOR
 from matstd.twin.compute import one_blas_thread
 from matstd.twin.frames import Array
 from matstd.twin.library import ordinary_model
@@ -37,7 +37,7 @@ MOST_TOUCHES = 3000
 """Touches from which others are ranked by an even choice of them, at a few points of their grids
 and without the many periods that waves may have."""
 
-FEW = 3  # points of a grid, of a long run
+POINTS_OF_LONG_RUN = 3  # points of a grid, of a long run
 
 MOST_COLUMNS, FEW_COLUMNS = 20, 8
 """Stored columns above which no further inner parameter is moved: their number counts squared; of a
@@ -179,7 +179,7 @@ def _board(
     room = max(MOST_SWITCHES - len(switches) - len(others), 0)
     others += [(s, ()) for s in _best(ResidualSpace.of(start), library, room)]
     for sized, same in others:
-        sd = np.array([p.sd for p in sized.effect.parameters]) * FREEDOM * sized.scale
+        sd = np.array([p.sd for p in sized.effect.parameters]) * FOUND_PRIOR_FACTOR * sized.scale
         width = sum(s.columns.shape[1] for s in switches)
         is_movable = width < (MOST_COLUMNS if is_short else FEW_COLUMNS)
         made = switch(base, sized.effect, sd, is_found=False, alike=same, is_movable=is_movable)
@@ -223,7 +223,10 @@ def _best(space: ResidualSpace, library: Sequence[Effect], count: int) -> list[S
         offered = [e for e in offered if traits(e).wave is None]
     grids = scanned_grids(offered, space)
     if is_long:
-        grids = [replace(g, variants=g.variants[:: -(-len(g.variants) // FEW)]) for g in grids]
+        grids = [
+            replace(g, variants=g.variants[:: -(-len(g.variants) // POINTS_OF_LONG_RUN)])
+            for g in grids
+        ]
     pool = signatures(space, grids, len(offered))
     scores = score_all(EffectSet(space, np.zeros((len(space.residual), 0))), pool)
     out: list[ScaledEffect] = []

@@ -20,10 +20,10 @@ from matstd.diagnosis.search.search_loop import (
     searched,
 )
 from matstd.diagnosis.search.selection import Search, is_series
-from matstd.diagnosis.search.task import FREEDOM, DiagnosisTask
+from matstd.diagnosis.search.task import FOUND_PRIOR_FACTOR, DiagnosisTask
 
 __all__ = [
-    "FREEDOM",
+    "FOUND_PRIOR_FACTOR",
     "MOST_SETS",
     "WHOLE_BELOW",
     "Budget",

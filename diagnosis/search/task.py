@@ -9,7 +9,7 @@ from matstd.diagnosis.regression import GrossErrors, Memory
 from matstd.twin.model import Model
 from matstd.twin.record import Run
 
-FREEDOM = 3.0
+FOUND_PRIOR_FACTOR = 3.0
 """Factor on the prior of a found effect in its last fit. Being found indicates its size better than
 the usual size, and the estimate must not be drawn to zero."""
 
@@ -58,4 +58,4 @@ class DiagnosisTask:
 
     def found_prior(self, sized: ScaledEffect) -> Prior:
         """Of the parameters of an effect that was added."""
-        return Prior.of_effects([sized.effect]).widened(FREEDOM * sized.scale)
+        return Prior.of_effects([sized.effect]).widened(FOUND_PRIOR_FACTOR * sized.scale)

@@ -45,8 +45,10 @@ _SHARES = (0.0, 0.1, 1.0)  # of a part beside the largest; four of them cover no
 _GRID = 100  # values of s_b for every R
 _QUANTILES = 128  # values of s_p for every R'
 _COMPONENTS = 400  # of the mixtures between them: 0.01 % of U
-_LEAST = 1e-12  # of a sum of variances: what is below counts as this
-_FAR = 20.0  # logarithm of how much less probable than the most probable s_b: left out
+_MIN_VARIANCE_SHARE = 1e-12  # of a sum of variances: what is below counts as this
+_NEGLIGIBLE_LOG_ODDS = (
+    20.0  # logarithm of how much less probable than the most probable s_b: left out
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -206,7 +208,7 @@ def _of_machine(frame: _Frame, of_visits: _Covariance) -> Expected:
     """
     V = _Covariance.sum(np.ones(2), [frame.of_calibration, of_visits])
     square = float(np.sum(frame.mean[1:] ** 2) + frame.mean_beside)
-    least = _LEAST * (np.trace(V.separate) + V.beside + square)
+    least = _MIN_VARIANCE_SHARE * (np.trace(V.separate) + V.beside + square)
     if frame.places < 2 or least == 0.0:
         return _NOTHING
     L = np.linalg.cholesky(V.separate[1:, 1:] + least * np.eye(len(V.separate) - 1))
@@ -235,7 +237,7 @@ def _of_size(lam: Array, z2: Array, times: Array) -> tuple[Array, Array]:
         lam: Contrasts have the variance ``1 + s_b^2 lam``.
         z2: Their squares; summed where there are several of one kind.
     """
-    lam = np.where(lam < _LEAST * lam.max(), 0.0, lam)
+    lam = np.where(lam < _MIN_VARIANCE_SHARE * lam.max(), 0.0, lam)
     has = (lam > 0.0) & (times > 0.0)
     ends = 1e-2 / np.sqrt(lam.max()), 1e3 * np.sqrt(np.max((1.0 + z2[has]) / lam[has]))
     for _ in range(2):  # the second time where something is
@@ -244,7 +246,7 @@ def _of_size(lam: Array, z2: Array, times: Array) -> tuple[Array, Array]:
         log_p = -0.5 * np.log(each) @ times - 0.5 * (z2 / each).sum(axis=1)
         log_p += 0.5 * np.log((lam / each) ** 2 @ times / times[has].sum())  # the prior, with one s
         log_p += 2.0 * np.log(s) + np.log(np.log(s[1] / s[0]))
-        some = np.flatnonzero(log_p > log_p.max() - _FAR)
+        some = np.flatnonzero(log_p > log_p.max() - _NEGLIGIBLE_LOG_ODDS)
         ends = s[max(some[0] - 1, 0)], s[min(some[-1] + 1, _GRID - 1)]
     return s, log_p
 

@@ -21,8 +21,8 @@ from matstd.twin.units import DEG
 MIN_PLACES = 8
 """Places below which nothing is said of a task: their spread has too few degrees of freedom."""
 
-_BESIDE = 1.0  # mm on the surface between visits to one place: touches stand several apart
-_TURNED = 6.0 * DEG  # between rotary readings of such visits: a standard may be clamped 5 aside
+_VISIT_SPACING = 1.0  # mm on the surface between visits to one place: touches stand several apart
+_VISIT_TURN = 6.0 * DEG  # between rotary readings of such visits: a standard may be clamped 5 aside
 
 
 @dataclass(frozen=True, eq=False)
@@ -166,7 +166,7 @@ def _same_places(first: Touches, rows: np.ndarray, other: Touches, among: np.nda
         same = among[other.feature[among] == first.feature[row]]
         off = np.linalg.norm(other.point[same] - first.point[row], axis=1)
         turn = np.abs(other.q[same][:, rotary] - first.q[row, rotary]).max(axis=1, initial=0.0)
-        near = (off < _BESIDE) & (turn < _TURNED)
+        near = (off < _VISIT_SPACING) & (turn < _VISIT_TURN)
         if near.any():
-            out[k] = same[near][np.argmin((off + turn / _TURNED)[near].round(3))]
+            out[k] = same[near][np.argmin((off + turn / _VISIT_TURN)[near].round(3))]
     return out

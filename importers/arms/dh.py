@@ -24,7 +24,7 @@ _LIMITS = {
 }
 """Columns of the limits of the joints."""
 
-SLACK = 0.5 * DEG  # by which a reading may lie beyond a limit
+LIMIT_TOLERANCE = 0.5 * DEG  # by which a reading may lie beyond a limit
 
 
 def arm_from_dh(sheet: Sheet, readings: Array, is_modified: bool = False) -> tuple[Chain, Array]:
@@ -122,7 +122,7 @@ def _travels(sheet: Sheet, readings: Array) -> list[tuple[float, float]]:
         if not a < b:
             raise sheet.bad(i, low, f"{a / DEG:g} to {b / DEG:g} degrees", "min below max")
         found = readings[:, i].min(), readings[:, i].max()
-        if found[0] < a - SLACK or found[1] > b + SLACK:
+        if found[0] < a - LIMIT_TOLERANCE or found[1] > b + LIMIT_TOLERANCE:
             shown = f"readings from {found[0] / DEG:g} to {found[1] / DEG:g} degrees"
             raise sheet.bad(i, low, shown, f"the travel, {a / DEG:g} to {b / DEG:g} degrees")
     return [(float(a), float(b)) for a, b in zip(*ends, strict=True)]

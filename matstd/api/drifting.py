@@ -50,12 +50,12 @@ SOMETIMES = (
 )
 """Files that not every run leaves."""
 
-HELD = 0.3  # share of a log that is held out where nothing is said
+HELD_OUT_SHARE = 0.3  # share of a log that is held out where nothing is said
 
 STEP = 5.0 * MINUTE
 """Between two rows, s: machines drift in tens of minutes, and shorter steps add no information."""
 
-LEAST = 40  # rows to learn from: ten for each of the blocks that are left out
+MIN_ROWS = 40  # rows to learn from: ten for each of the blocks that are left out
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -220,12 +220,12 @@ def _record(
         count = sum(len(r) for r in records[: len(logs)])
     else:
         since = record.time - record.time[0]
-        until = (1.0 - HELD) * since[-1] if train_until is None else train_until
+        until = (1.0 - HELD_OUT_SHARE) * since[-1] if train_until is None else train_until
         count = int(np.searchsorted(since, until))
-    if count < LEAST or len(record) - count < 2:
+    if count < MIN_ROWS or len(record) - count < 2:
         raise DesignError(
             f"{count} rows to fit and {len(record) - count} held out: "
-            f"expected {LEAST} and 2 at least (steps of {record.step / MINUTE:g} min)"
+            f"expected {MIN_ROWS} and 2 at least (steps of {record.step / MINUTE:g} min)"
         )
     train = np.arange(count)
     record = varying(record, train)

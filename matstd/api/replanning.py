@@ -53,7 +53,9 @@ from matstd.twin.record import Setup
 from matstd.twin.units import DEG, MINUTE, UM
 
 SEED = 0  # of the places that are tried first: the same log gives the same programs
-ROUGH = 1.0 * UM  # uncertainty of a touch where only the place of the standard is asked for, mm
+ROUGH_UNCERTAINTY = (
+    1.0 * UM
+)  # uncertainty of a touch where only the place of the standard is asked for, mm
 OURS = (*REPORT_FILES, *SHEET_FILES, "programs/*")  # files that not every replan leaves
 
 
@@ -303,7 +305,7 @@ def _place(
     believed = parts[0].heading.setup
     is_search = [part.program.endswith(SEARCH) for part in parts]
     if not any(is_search):
-        run = evaluate(parts, standard, chain, ROUGH, dialect)
+        run = evaluate(parts, standard, chain, ROUGH_UNCERTAINTY, dialect)
         found = run.touches.setups[0]
         return found, list(located_lines(believed, found))
     searches = [part for part, is_one in zip(parts, is_search, strict=True) if is_one]

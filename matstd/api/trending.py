@@ -10,7 +10,7 @@ from typing import TypeVar
 from matstd.api.runs import read_run
 from matstd.api.saved import REPORT_FILES, Saveable
 from matstd.diagnosis.charts import (
-    FEWEST,
+    MIN_OCCASIONS,
     History,
     Occasion,
     history,
@@ -113,10 +113,10 @@ def trend(
         raise BadArgument("runs", str(runs), "a folder of runs or models, or several files")
     else:
         given = [one if isinstance(one, Run) else str(one) for one in runs]
-    if len(given) < FEWEST:
+    if len(given) < MIN_OCCASIONS:
         where = f"{runs}: " if isinstance(runs, str | Path) else ""
         raise NotEnoughData(
-            f"{where}{len(given)} runs or models, expected at least {FEWEST}; two runs are "
+            f"{where}{len(given)} runs or models, expected at least {MIN_OCCASIONS}; two runs are "
             "compared by matstd diagnose FIRST.csv SECOND.csv"
         )
     # model files hold their estimates: nothing is fitted again

@@ -31,7 +31,7 @@ SIZE_STEP = 40.0  # between two bases that are tried, mm
 HEIGHT, LEAST_HEIGHT = 220.0, 120.0
 """Height of a standard, mm, of a base of 280 and more, and the smallest there is."""
 
-SLENDER = 0.8  # height over base of smaller ones
+HEIGHT_OVER_BASE = 0.8  # height over base of smaller ones
 
 LENGTHS = (160.0, 100.0, 220.0)
 """Lengths of probes that are tried, mm: the usual one, one for small machines, one for deep."""
@@ -42,7 +42,9 @@ FACES = {280.0: 6, 240.0: 5, 200.0: 4, 0.0: 3}
 SHARE_OF_TRAVEL = 0.8
 """Size of a table over the shorter travel across the tool, where no size is stated."""
 
-ROOM = 1.25  # workspace over base: workpieces are a quarter larger than what is probed
+WORKSPACE_OVER_BASE = (
+    1.25  # workspace over base: workpieces are a quarter larger than what is probed
+)
 
 UPRIGHT, ON_ITS_SIDE = (0.0, 0.0, 0.0), (-90.0, 0.0, 0.0)
 """Ways to stand that are tried: on a face that looks along Z, or along Y; degrees."""
@@ -232,7 +234,7 @@ def _tables(
     machine: Path,
 ) -> dict[str, dict[str, object]]:
     """Keys of a project by table."""
-    height = max(LEAST_HEIGHT, min(HEIGHT, np.floor(SLENDER * base / 10.0) * 10.0))
+    height = max(LEAST_HEIGHT, min(HEIGHT, np.floor(HEIGHT_OVER_BASE * base / 10.0) * 10.0))
     sides = [float(side) for side in table]
     outline: dict[str, object] = {"diameter_mm": sides[0]}
     if len(table) > 1:
@@ -260,13 +262,13 @@ def workspace(
 ) -> Iterator[tuple[str, list[float]]]:
     """Readings by axis at which the tool point is in a box over the seat, within the travels.
 
-    The box is `ROOM` times as wide as the base. Linear readings follow from the tool point, which
-    they shift by their directions: a linear equation at every table pose.
+    The box is `WORKSPACE_OVER_BASE` times as wide as the base. Linear readings follow from the tool
+    point, which they shift by their directions: a linear equation at every table pose.
 
     Args:
         turn: Rotation of the standard about x, y, z of the table, degrees.
     """
-    half = 0.5 * ROOM * base
+    half = 0.5 * WORKSPACE_OVER_BASE * base
     corners = np.array(list(product((-half, half), (-half, half), (0.0, height))))
     corners = corners @ fixed_xyz(np.array(turn) * DEG).T
     rotary = [a for a in chain.programmed_axes if chain.link(a).kind == "rotary"]

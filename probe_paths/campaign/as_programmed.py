@@ -22,7 +22,7 @@ LONGEST_CAMPAIGN = timedelta(days=30)
 COARSEST_STEP = 0.01
 """Step of positions that is too coarse for a measurement, mm; the masks print 0.000001."""
 
-FEWEST = 5  # touches from which a clock or a step is judged
+MIN_TOUCHES = 5  # touches from which a clock or a step is judged
 
 SAME_ANGLE = 0.05
 """Largest deviation of a rotary axis from its programmed position, degrees; as in the programs."""
@@ -40,7 +40,7 @@ def check_numbers(parts: Sequence[LogPart]) -> None:
         found = f"{first.begin.date()}, where {last.path.name} has {last.begin.date()}"
         expected = f"logs of one campaign, within {LONGEST_CAMPAIGN.days} days; evaluate them apart"
         raise BadFile(first.path, "DATE", found, f"{expected}, or correct the clock of the control")
-    for part in (p for p in parts if len(p.number) >= FEWEST):
+    for part in (p for p in parts if len(p.number) >= MIN_TOUCHES):
         _check_steps(part)
     for key in ("tool", "preset"):
         _check_common(key, [p for p in parts if getattr(p, key) is not None])

@@ -37,7 +37,9 @@ from matstd.twin.errors import BadFile
 from matstd.twin.machine import Chain
 from matstd.twin.words import not_read
 
-_BEYOND = 1.05  # multiple of its limit by which a value is off when the program has to stop
+_OFF_LIMIT_FACTOR = (
+    1.05  # multiple of its limit by which a value is off when the program has to stop
+)
 
 
 def read_program(
@@ -128,7 +130,7 @@ def interpret(
     language = language_of(path)
     # the program must stop in every run in which one tested value is off its limit
     for test in (*interlocks(language, frame, stated.is_first), *turn_tests(language, frame)):
-        for off in (-_BEYOND * test.limit, _BEYOND * test.limit):
+        for off in (-_OFF_LIMIT_FACTOR * test.limit, _OFF_LIMIT_FACTOR * test.limit):
             runner.run(0, replace(begin.copied(), fault=test, off=off))
     program = ReadProgram(
         path=path,

@@ -2,7 +2,7 @@
 
 from matstd.twin.units import DAY, HOUR
 
-_BACK = 0.5 * DAY  # a step of more than this, s, is a step back within the same day
+_MIDNIGHT_STEP = 0.5 * DAY  # a step of more than this, s, is a step back within the same day
 
 _PAUSE = 600.0
 """Usual limit of a pause between two touches, s: a step of an hour and less than this is a clock
@@ -27,7 +27,7 @@ class LogClock:
         if self._last is None or self.start is None:
             self.start = self._last = now
         step = (now - self._last) % DAY
-        if step > _BACK:
+        if step > _MIDNIGHT_STEP:
             back = DAY - step
             step = HOUR - back if 0.0 <= HOUR - back < _PAUSE else 0.0
             self.remarks.append(

@@ -16,7 +16,7 @@ MAX_PROBING_FEED = 1000.0
 SHORTEST_BACK = 1.0
 """Retract after a contact, mm: with less the ball still lies on the surface when it moves off."""
 
-_ANYWHERE = 17.31
+_UNKNOWN_READING = 17.31
 """Reading of an axis that the tool changer left anywhere, mm: not zero, so that a test of the
 preset that forgot to read where the axis stands is seen."""
 
@@ -71,7 +71,7 @@ def _place(datum: Datum, places: Mapping[Datum, str], state: State) -> float:
         return float(state.tool or 0)
     letter, frame = places[datum], state.frame
     reading = float(state.q[frame.chain.axis_index(letter)])
-    reading = _ANYWHERE if math.isnan(reading) else reading
+    reading = _UNKNOWN_READING if math.isnan(reading) else reading
     if datum.startswith(_PRESET):
         return (state.plane or frame).coordinate(letter, reading)
     return reading if letter in LINEAR else reading / DEG

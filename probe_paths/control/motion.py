@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 
-from matstd.probe_paths.control.state import SAME, TOP, State
+from matstd.probe_paths.control.state import SAME, TOP_OF_TRAVEL, State
 from matstd.probe_paths.control.steps import Move
 from matstd.probe_paths.language import Block, Q
 from matstd.probe_paths.plan import LINEAR
@@ -110,9 +110,11 @@ def _retract(state: State, block: Block, target: Array, letters: list[str]) -> N
         raise state.refusal(block, f"Z alone with {state.terms.machine}")
     column = state.frame.chain.axis_index("Z")
     top = state.frame.chain.link("Z").range[1]
-    if target[column] < top - TOP:
+    if target[column] < top - TOP_OF_TRAVEL:
         raise state.refusal(
-            block, f"at least Z{top - TOP:+.4f}", f"Z{target[column]:+.4f} {state.terms.machine}"
+            block,
+            f"at least Z{top - TOP_OF_TRAVEL:+.4f}",
+            f"Z{target[column]:+.4f} {state.terms.machine}",
         )
     if target[column] < state.q[column] - SAME:
         raise state.refusal(block, "a retract that does not go down")

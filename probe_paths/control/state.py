@@ -21,7 +21,7 @@ from matstd.twin.errors import BadFile
 from matstd.twin.frames import Array
 from matstd.twin.units import DEG
 
-TOP = 20.0  # how far below the upper end of Z's travel a retract with M91 may end, mm
+TOP_OF_TRAVEL = 20.0  # how far below the upper end of Z's travel a retract with M91 may end, mm
 
 SAME_ANGLE = 1e-3
 """Degrees by which a test may take off another reading than the one that was programmed."""

@@ -113,7 +113,7 @@ FORMS = {
     "call": "O{label:d} CALL",
 }
 
-AGAIN = 10_000  # added to the number of a test that stands again
+REPEATED_TEST = 10_000  # added to the number of a test that stands again
 _TEST = re.compile(r"O([23]\d\d) (IF|ENDIF)")
 _CLOCKS = {"SECONDS": WAIT, "CALENDAR": DATE}
 _FORMAT = re.compile(r"%[\d.]+LF")
@@ -145,7 +145,7 @@ def _lines(blocks: Sequence[str]) -> list[str]:
         if (test := _TEST.match(text)) is not None:
             used[test[1]] = used.get(test[1], 0) + (test[2] == "IF")
             again = used[test[1]] - 1
-            text = f"O{int(test[1]) + again * AGAIN}{text[test.end(1) :]}"
+            text = f"O{int(test[1]) + again * REPEATED_TEST}{text[test.end(1) :]}"
         out.append(f"O{opened} {text}" if text == "ENDSUB" else text)
     return out
 

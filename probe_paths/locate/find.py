@@ -36,8 +36,8 @@ standard of tall posts may leave a short stylus no room to come down over a wide
 _TRIED, _FEWEST_TRIED = 40_000, 2_000
 """Places in the first round for a spread of 20 mm and 5 degrees, and for a small one."""
 
-_KEPT = 60  # number improved on the relief
-_EXACT = 3  # number improved on the exact surfaces
+_IMPROVED_ON_RELIEF = 60  # number improved on the relief
+_IMPROVED_EXACTLY = 3  # number improved on the exact surfaces
 
 _ROUNDS, _EXACT_ROUNDS, _LAST_ROUNDS = 25, 15, 15
 _RESTARTS, _RESTART_PLACES = 6, 24
@@ -46,7 +46,7 @@ _STEP = np.array([0.5, 0.5, 0.5, 0.005, 0.005, 0.005])  # mm and rad, of differe
 _FINE = np.array([1e-3, 1e-3, 1e-3, 1e-5, 1e-5, 1e-5])  # the same on the surfaces
 _ROBUST = 2.0  # mm: residual from which a touch near an edge counts linearly
 _SAME = 4.0  # mm: two placements closer than this at every touch are one
-GOOD = 0.1
+MAX_RMS = 0.1
 """Largest rms of the touches at an accepted place, mm: machine errors over the 100 mm of a search
 leave 0.03 mm."""
 
@@ -102,8 +102,8 @@ def find_standard(
     tried = rng.uniform(-limit, limit, (count, 6))
     # the believed place is always among them
     tried[0] = 0.0
-    best = _converged(_best(tried, on_relief, _KEPT), on_relief, _STEP, _ROUNDS)
-    few = _distinct(best, on_relief, ball)[:_EXACT]
+    best = _converged(_best(tried, on_relief, _IMPROVED_ON_RELIEF), on_relief, _STEP, _ROUNDS)
+    few = _distinct(best, on_relief, ball)[:_IMPROVED_EXACTLY]
     few = _converged(few, on_surfaces, _FINE, _EXACT_ROUNDS)
     few = _distinct(few, on_surfaces, ball)
     few[:1] = _restarted(few[0], on_surfaces, rng)
@@ -123,7 +123,7 @@ def find_standard(
 
 def _refuse_ambiguous_place(rms: Array, u: Array) -> None:
     """Refuse a place that does not fit, is not the only one, or is too uncertain to plan for."""
-    if rms[0] > GOOD:
+    if rms[0] > MAX_RMS:
         raise NotEnoughData(
             f"no place within the spread fits the touches: the best leaves {rms[0]:.2f} mm; "
             "another standard, farther away, or another probe?"

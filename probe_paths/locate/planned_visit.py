@@ -110,7 +110,9 @@ def _schedule(head: str) -> tuple[VisitSchedule, float]:
     return schedule, number("after touch ", np.inf)
 
 
-DROPPED = 0.1  # share of the touches that may be refused at another place, each with its reason
+MAX_DROPPED_SHARE = (
+    0.1  # share of the touches that may be refused at another place, each with its reason
+)
 
 
 def planned_again(
@@ -135,7 +137,7 @@ def planned_again(
     """
     old = shortened(programs, standard, chain)
     wanted = _touches_of(old, standard) if visit is None else visit.requests
-    options = replace(old.options, tolerated=int(DROPPED * len(wanted)))
+    options = replace(old.options, tolerated=int(MAX_DROPPED_SHARE * len(wanted)))
     if ball is not None:
         known = Workshop(options.workshop.table, (), ball)
         stated = {solid.name for solid in known.solids}

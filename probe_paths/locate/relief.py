@@ -14,8 +14,8 @@ from matstd.twin.sampling import grid_points
 
 PITCH = 1.0  # spacing of the places, mm; what is found on them is refined on the exact surfaces
 _FINE = 0.4  # mm between points of a face: no place between them stays empty
-_ROUND = 60.0  # mm round the base that belongs to the picture
-NOWHERE = -1e3  # height where there is nothing, mm
+_MARGIN = 60.0  # mm round the base that belongs to the picture
+NO_SURFACE = -1e3  # height where there is nothing, mm
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,11 +30,11 @@ class Relief:
     def of(cls, standard: Standard, radius: float) -> "Relief":
         """Relief of a standard for a ball of some radius, mm."""
         base = standard.base
-        half = np.array(base.half_size) + _ROUND
+        half = np.array(base.half_size) + _MARGIN
         axes = [np.arange(-h, h + PITCH, PITCH) for h in half]
         xy = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
         flat = xy.reshape(-1, 2)
-        top = np.full(len(flat), NOWHERE)
+        top = np.full(len(flat), NO_SURFACE)
         middle = np.column_stack([flat, np.full(len(flat), 0.5 * base.thickness)])
         on_base = base.body.distance(middle) <= 0.0
         top[on_base] = base.thickness

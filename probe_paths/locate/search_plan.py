@@ -12,7 +12,7 @@ from matstd.artefact.body import Standard
 from matstd.artefact.reach import Workshop
 from matstd.artefact.tool import readings_at
 from matstd.probe_paths.locate.find import KNOWN, KNOWN_ANGLE, Spread, lifted
-from matstd.probe_paths.locate.relief import NOWHERE, PITCH, Relief
+from matstd.probe_paths.locate.relief import NO_SURFACE, PITCH, Relief
 from matstd.probe_paths.plan import (
     PlanOptions,
     Probe,
@@ -41,7 +41,7 @@ _NOISE = 0.03  # standard uncertainty of a touch of a search, the errors of the 
 _FREE_BESIDE = 3.0  # kept free beside the ball's way and under the body besides everything else, mm
 
 _UPRIGHT = np.cos(1.0 * DEG)
-BACK = 5.0  # retract after a contact, mm
+RETRACT = 5.0  # retract after a contact, mm
 
 
 def plan_search(
@@ -81,7 +81,9 @@ def plan_search(
     q = np.repeat(q, len(place) + 1, axis=0)
     q = inverse_linear(chain, np.concatenate([start, above[None]]), q, probe.length)
     height = float(np.ceil(q[-1, chain.axis_index("Z")]))
-    options = PlanOptions(standoff=BACK, search=path - BACK, retract=retract, workshop=workshop)
+    options = PlanOptions(
+        standoff=RETRACT, search=path - RETRACT, retract=retract, workshop=workshop
+    )
     plan = _plan(standard, chain, probe, setup, options, q[:-1], height)
     _refuse_out_of_travel_or_collision(plan, path)
     return plan
@@ -94,7 +96,7 @@ def _places(
     sin, base = np.sin(spread.angle), standard.base.thickness
     # where the standard leans, what is high moves sideways from what is low
     beside = _FREE_BESIDE + (float(relief.top.max()) - base) * sin
-    is_bad = relief.top <= NOWHERE
+    is_bad = relief.top <= NO_SURFACE
     begins = [end for end, _ in probe.stack]
     radii = [*(radius for _, radius in probe.stack[1:]), probe.nose_radius]
     for begin, radius in zip(begins, radii, strict=True):

@@ -12,7 +12,7 @@ from matstd.twin.record import Labels
 
 _CELL = 4.0  # mm: side of a prism's lid; its corners are 0.2 mm off at a radius of 12 mm
 _FINE = 4  # intervals along a side of a cell at which the face is compared with its corners
-_OVER = 0.02  # mm: what a face of 12 mm radius may rise above these places in between
+_MAX_RISE_BETWEEN = 0.02  # mm: what a face of 12 mm radius may rise above these places in between
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,7 +137,7 @@ def _cell(i: int, j: int, uv: Array, height: Array, floor: float) -> Hulls:
         + corners[0, 1] * (1 - s) * t
         + corners[1, 1] * s * t
     )
-    top = corners + float((lid - flat).max()) + _OVER
+    top = corners + float((lid - flat).max()) + _MAX_RISE_BETWEEN
     outline = uv[mine][np.ix_([0, -1], [0, -1])].reshape(-1, 2)
     low = np.column_stack([outline, np.full(4, floor)])
     high = np.column_stack([outline, top.reshape(-1)])

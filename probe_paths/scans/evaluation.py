@@ -48,7 +48,7 @@ _ON_SURFACE = 0.25  # of the radius: centres of a ball are farther from the face
 _AVERAGED = 0.2  # mm; a curvature of 1/8 mm moves the mean of such an arc by 0.2 µm / 1000
 _BELIEVED = 10.0  # mm: the same before the fit
 _LARGEST_STEP, _USUAL_STEPS = 2.0, 10.0  # mm between points of a line; and median steps
-_BESIDE = 0.5  # mm that foot points may lie beyond the trimmed edge
+_EDGE_TOLERANCE = 0.5  # mm that foot points may lie beyond the trimmed edge
 _POINTS_A_ROW = 4  # points of a stretch that becomes a row
 _ALIKE = np.linspace(0.0, 0.98, 99)  # correlations of neighbours that are tried
 _LEAST_U = 0.01 * UM  # of a row
@@ -231,7 +231,9 @@ def _gaps(
             "centres of the ball; a log with the radius of the tip taken off has lost the "
             "direction in which it was",
         )
-    beyond = np.any(np.abs(uv) > np.array(patch.half_size) + limit - LARGEST_GAP + _BESIDE, axis=1)
+    beyond = np.any(
+        np.abs(uv) > np.array(patch.half_size) + limit - LARGEST_GAP + _EDGE_TOLERANCE, axis=1
+    )
     far = (np.abs(gap) > limit) | beyond
     if far.any():
         at = int(np.flatnonzero(far)[0])

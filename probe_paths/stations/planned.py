@@ -22,7 +22,7 @@ from matstd.twin.record import Setup
 _POSES_TRIED = 6
 """Table poses at which a place of a further clamping is looked for, the best inclined first."""
 
-_LINKS = 8
+_LINKING_TOUCHES = 8
 """Touches on balls that a further probe repeats, at every pose that it visits or else at others:
 twice the four numbers of a stylus."""
 
@@ -109,10 +109,12 @@ def _repeated_ball_touches(standard: Standard, wanted: Requests, left: IntArray)
     is_ball = np.isin(wanted.feature, [sphere.name for sphere in standard.spheres])
     is_ball[left] = False
     pose = wanted.pose
-    lots = [np.flatnonzero(is_ball & (pose == one))[:_LINKS] for one in np.unique(pose[left])]
+    lots = [
+        np.flatnonzero(is_ball & (pose == one))[:_LINKING_TOUCHES] for one in np.unique(pose[left])
+    ]
     here = np.concatenate(lots)
     elsewhere = np.setdiff1d(np.flatnonzero(is_ball), here)
-    return np.concatenate([here, elsewhere[: max(_LINKS - len(here), 0)]])
+    return np.concatenate([here, elsewhere[: max(_LINKING_TOUCHES - len(here), 0)]])
 
 
 def _in_other_clamping(

@@ -79,7 +79,7 @@ def _size(share: Share) -> str:
     return with_uncertainty(rms_length(share.field) / UM, share.u / UM or None, "µm")
 
 
-SHOWN = 0.06  # share of the path's size as which its largest deviation is drawn
+DRAWN_SIZE = 0.06  # share of the path's size as which its largest deviation is drawn
 DRAWN_POINTS = 6000  # points that are drawn at most
 
 
@@ -122,7 +122,7 @@ def _path(ax: Any, done: Compensated, rows: np.ndarray) -> None:
         wide = np.nanmax(points, axis=0) - np.nanmin(points, axis=0)
     i, j = sorted(np.argsort(-wide)[:2])
     worst = max(float(np.linalg.norm(done.before[rows], axis=1).max()), 1e-9)
-    gain = SHOWN * max(float(wide.max()), 1.0) / worst
+    gain = DRAWN_SIZE * max(float(wide.max()), 1.0) / worst
     digit = 10.0 ** np.floor(np.log10(gain))
     gain = digit * np.floor(gain / digit)
     for field, colour, style, label in (
@@ -140,7 +140,7 @@ def _path(ax: Any, done: Compensated, rows: np.ndarray) -> None:
 
 
 BARS = 16  # errors that are drawn at most
-LEAST = 1e-3  # µm: a logarithmic scale begins there, at a nanometre
+SMALLEST_DRAWN = 1e-3  # µm: a logarithmic scale begins there, at a nanometre
 
 
 def draw_errors_left(results: Mapping[str, Result]) -> Figure:
@@ -164,7 +164,7 @@ def draw_errors_left(results: Mapping[str, Result]) -> Figure:
 
 
 def _curve(ax: object, size: np.ndarray, label: str | None, colour: str, style: str) -> None:
-    x = np.maximum(np.sort(size) / UM, LEAST)
+    x = np.maximum(np.sort(size) / UM, SMALLEST_DRAWN)
     y = (np.arange(len(x)) + 1.0) / len(x)
     ax.plot(x, y, style, color=colour, lw=1.4, label=label)  # type: ignore[attr-defined]
 

@@ -21,7 +21,7 @@ from matstd.twin.units import DEG, UM
 
 PAGE, PICTURES = "report.html", "pictures"
 
-FEEBLE = 1e-2 * UM
+SMALLEST_LISTED = 1e-2 * UM
 """Errors below this size are not listed: 10 nm are below the resolution of the tables."""
 
 _MEANS = (
@@ -105,7 +105,7 @@ def _key(first: Result, done: Sequence[VerifiedTables]) -> list[KeyFigure]:
 
 def _control(played: VerifiedTables, chain: Chain) -> list[Section]:
     """One control: its figures, what it cannot represent, its one-point test."""
-    result, least = played.result, max(played.interpolation, FEEBLE)
+    result, least = played.result, max(played.interpolation, SMALLEST_LISTED)
     rows = [
         [e.name, digits(e.before / UM), with_uncertainty(e.rms / UM, e.u / UM or None)]
         for e in result.left

@@ -67,7 +67,7 @@ def feature_shares(
     return out
 
 
-GRAIN = 0.05  # of the corners of bodies, mm
+CORNER_STEP = 0.05  # of the corners of bodies, mm
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,7 +134,7 @@ def _data(scene: DesignScene) -> TREE:
 
 
 def _corners(corners: Array) -> TREE:
-    return packed(corners.reshape(-1, 3), "i2", grain=GRAIN, unit="mm")
+    return packed(corners.reshape(-1, 3), "i2", grain=CORNER_STEP, unit="mm")
 
 
 def _touches(plan: TouchPlan) -> TREE:

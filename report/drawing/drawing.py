@@ -33,7 +33,7 @@ _SMALLEST = 0.5  # scale of the views below which the sheet is rather larger
 _SECTIONS = (2.0, 1.0)  # scales of sections, the first that finds room
 _LEFT, _ABOVE = 45.0, 34.0  # mm of paper: where the views begin, from the left and the upper edge
 _APART, _BETWEEN = 34.0, 44.0  # mm between the views, side by side and one below the other
-_BESIDE = 26.0  # mm to the right of the view from the left, for the signs of datum A
+_DATUM_MARGIN = 26.0  # mm to the right of the view from the left, for the signs of datum A
 _GAP = 4.0  # mm between blocks
 _SIGNS = 14.0  # mm above the title block, for edges and surfaces
 
@@ -102,7 +102,7 @@ def _formats(standard: Standard) -> Iterable[tuple[Paper, float]]:
     (a, b), tall = standard.base.half_size, tallest(standard)
     for scales in ([s for s in _SCALES if s >= _SMALLEST], [s for s in _SCALES if s < _SMALLEST]):
         for paper in PAPERS:
-            wide = paper.width - _LEFT - _APART - _BESIDE - COLUMN - 10.0
+            wide = paper.width - _LEFT - _APART - _DATUM_MARGIN - COLUMN - 10.0
             high = paper.height - _ABOVE - _BETWEEN - BELOW - 10.0
             yield from (
                 (paper, s) for s in scales if 2 * s * (a + b) <= wide and s * (tall + 2 * b) <= high

@@ -15,7 +15,7 @@ from matstd.report.drawing.sheet import HATCH, THIN, WIDE, Sheet, View, ratio
 from matstd.twin.units import DEG
 
 BALL_CUT, HOLE_CUT, FACE_CUT = "D", "E", "F"  # letters of the sections; A, B and C are datums
-_FARTHER = 0.01  # mm of height that count as much as a millimetre along y
+_HEIGHT_WEIGHT = 0.01  # mm of height that count as much as a millimetre along y
 LARGE = 40.0  # half side of a face from which its section is drawn, mm
 
 
@@ -151,5 +151,5 @@ def draw_face(
 def section_of(patch: FreeformPatch) -> float:
     """Where a face is cut: y of a crest, of several the farthest from the target of C, mm."""
     uv = 0.8 * patch.grid(1.0)
-    best = int(np.argmax(patch.height(uv) + _FARTHER * uv[:, 1]))
+    best = int(np.argmax(patch.height(uv) + _HEIGHT_WEIGHT * uv[:, 1]))
     return float(np.round(patch.point(uv[[best]])[0, 1], 1))

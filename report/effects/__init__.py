@@ -22,7 +22,7 @@ __all__ = [
     "words_of_name",
 ]
 
-NAMED = 4  # bodies, titles or names that are written out; of more, the first ones
+MAX_WRITTEN_OUT = 4  # bodies, titles or names that are written out; of more, the first ones
 
 _BODIES = {"t": "the tool", "w": "the workpiece", "standard": "the standard", "probe": "the probe"}
 
@@ -127,9 +127,9 @@ def _whole(title: Title) -> str:
 
 def _few(words: list[str], last: str = "or") -> str:
     """`Z, Y, X or B`, or the first ones and how many more there are."""
-    if len(words) <= NAMED:
+    if len(words) <= MAX_WRITTEN_OUT:
         return listed(words, last)
-    return f"{', '.join(words[:NAMED])} {last} {len(words) - NAMED} more"
+    return f"{', '.join(words[:MAX_WRITTEN_OUT])} {last} {len(words) - MAX_WRITTEN_OUT} more"
 
 
 def _bracket(effects: Sequence[Effect], title: str) -> str:

@@ -36,8 +36,10 @@ USUAL = (Quantity.SQUARENESS, Quantity.SCALE, *ARM)
 SPANS = (Quantity.STRAIGHTNESS, Quantity.ANGULAR, Quantity.ROTARY_MOTION)
 """Curves, reported by their peak to valley."""
 
-CLEAR = 2.0  # standard uncertainties from which on a quantity is worth a line on the console
-NOTED = 8  # quantities reported on the console
+MIN_SIGNIFICANCE = (
+    2.0  # standard uncertainties from which on a quantity is worth a line on the console
+)
+MAX_REPORTED = 8  # quantities reported on the console
 
 
 @dataclass(frozen=True, slots=True)
@@ -191,7 +193,9 @@ def noted_lines(geometry: LearntGeometry) -> list[str]:
     noted += [r for r in known if r not in noted and (_is_line(r) or _is_clear(r))]
     noted = noted or [r for r in known if _is_usual(r)] or known
     by_size = sorted(noted, key=lambda r: (not r.has_changed, -r.at_ends.value))
-    lines = [_noted(r) for i, r in enumerate(by_size) if i < NOTED or r.is_far or _is_line(r)]
+    lines = [
+        _noted(r) for i, r in enumerate(by_size) if i < MAX_REPORTED or r.is_far or _is_line(r)
+    ]
     more = len(noted) - len(lines)
     lines += [f"and {more} more in the table"] if more > 0 else []
     if any(step.rung is Rung.MODEL for step in geometry.ladder) and not any(
@@ -253,7 +257,7 @@ def _is_line(row: GeometryRow) -> bool:
 
 def _is_clear(row: GeometryRow) -> bool:
     """Whether it exceeds its uncertainty by more than chance."""
-    return row.is_determined and abs(row.estimate.value) > CLEAR * row.estimate.u
+    return row.is_determined and abs(row.estimate.value) > MIN_SIGNIFICANCE * row.estimate.u
 
 
 def _is_of_arm(row: GeometryRow) -> bool:

@@ -24,7 +24,7 @@ from matstd.twin.record import Touches
 from matstd.twin.units import UM
 
 MAX_NAMED_CHANGES = 4  # changes of one run that a sentence lists, the largest over the travel first
-NEARLY = 3.0  # standard uncertainties from which a change below the limit is mentioned
+MIN_MENTIONED = 3.0  # standard uncertainties from which a change below the limit is mentioned
 
 
 def change_sentences(trend: Trend) -> list[str]:
@@ -105,7 +105,7 @@ def _clearest(rows: Sequence[GeometryRow], run: int) -> str:
     steps = [(row, row.steps[run - 1]) for row in rows]
     near = [(abs(s.value) / s.u, row, s) for row, s in steps if s is not None and s.u > 0.0]
     clear, row, step = max(near, key=lambda one: one[0], default=(0.0, None, None))
-    if clear <= NEARLY or row is None or step is None:
+    if clear <= MIN_MENTIONED or row is None or step is None:
         return ""
     return f"; {quantity_name(row)} may have changed by {estimate_words(step, row.unit)}"
 

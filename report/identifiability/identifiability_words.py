@@ -24,7 +24,9 @@ from matstd.twin.frames import Array
 from matstd.twin.machine import Chain
 
 MAX_NAMED_PARAMETERS = 4  # parameters of a combination that are written out at most
-SHARE = 0.1  # a parameter below this share of the largest weight is left out of the words
+MIN_WEIGHT_SHARE = (
+    0.1  # a parameter below this share of the largest weight is left out of the words
+)
 _FULL = 0.9995  # a correlation that rounds to 1.000
 _SAME = 1e-6  # relative, of two weights
 _SHAPES = {"sinusoidal": "sine", "sinusoidal@90": "cosine"}
@@ -118,7 +120,7 @@ def combination_words(
         importance: Weights in units of the expected size of each parameter, (P,).
     """
     order = np.argsort(-np.abs(importance), kind="stable")
-    kept = [k for k in order if abs(importance[k]) >= SHARE * abs(importance[order[0]])]
+    kept = [k for k in order if abs(importance[k]) >= MIN_WEIGHT_SHARE * abs(importance[order[0]])]
     label, factor = shown(units[order[0]])
     parts = []
     for k in kept[:MAX_NAMED_PARAMETERS]:

@@ -14,7 +14,7 @@ from matstd.twin.units import DEG, UM, URAD
 
 CURVE_POINTS = 400  # points of a curve that are drawn
 
-BEYOND = 0.3
+DRAWN_BEYOND = 0.3
 """Share of the range by which a curve without a formula is drawn beyond it: there its uncertainty
 comes back."""
 
@@ -50,7 +50,7 @@ def law_curve(learning: Learning, law: Law, driver: Driver) -> LawCurve:
     used = x[fit.used]
     label, per = axis_label(driver, used)
     is_curve = any(f.shape.word == "curve" and f.driver == driver for f in law.factors)
-    beyond = BEYOND * float(np.ptp(used)) if is_curve else 0.0
+    beyond = DRAWN_BEYOND * float(np.ptp(used)) if is_curve else 0.0
     grid = np.linspace(float(used.min()) - beyond, float(used.max()) + beyond, CURVE_POINTS)
     if driver.nature == "sign":
         grid = np.array([-1.0, 1.0])

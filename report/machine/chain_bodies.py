@@ -25,8 +25,8 @@ _NOSE_RADIUS, _NOSE = 45.0, 170.0  # of the spindle, mm: those of a spindle HSK 
 _STEEL, _RAIL, _BED = "#aeb6c0", "#6b7685", "#d3d8de"
 _TINT = 0.45  # of the colour of an axis that its bodies keep; the rest is white
 _ALIGNED = 0.7  # cosine from which an axis counts as along its side
-_LEAST = 60.0  # mm: half a body's width at least
-_MOST = 450.0  # mm: half a table's width at most
+_MIN_HALF_WIDTH = 60.0  # mm: half a body's width at least
+_MAX_HALF_WIDTH = 450.0  # mm: half a table's width at most
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,11 +132,11 @@ def _table(chain: Chain, inner: Sequence[Link]) -> _Side:
     origin = chain.table_origin
     side = _Side(-up, origin.copy(), origin.copy())
     reach = [k.range[1] - k.range[0] for k in chain.links if k.kind == "linear" and k.programmed]
-    half = float(np.clip(0.3 * min(reach, default=600.0), _LEAST, _MOST))
+    half = float(np.clip(0.3 * min(reach, default=600.0), _MIN_HALF_WIDTH, _MAX_HALF_WIDTH))
     if first is None or first.kind != "rotary" or abs(first.direction @ up) < _ALIGNED:
         axes = frame_along(up)
         at = axes @ origin
-        wide, thick = np.array([half, half, 0.0]), np.array([0.0, 0.0, 0.25 * _LEAST])
+        wide, thick = np.array([half, half, 0.0]), np.array([0.0, 0.0, 0.25 * _MIN_HALF_WIDTH])
         plate = block(at - wide - thick, at + wide, axes)
         side.add("w" if first is None else first.name, _STEEL, plate)
     else:
@@ -167,8 +167,8 @@ def _frame(side: _Side, direction: Array) -> Array:
 def _carriage(side: _Side, link: Link, carrier: str, colour: tuple[str, str]) -> None:
     """A slab, and below it two rails on the body that carries it."""
     axes = _frame(side, link.direction)
-    at, half = axes @ side.middle, [max(side.half(a), _LEAST) for a in axes[:2]]
-    thick, begin = 0.35 * _LEAST + 0.06 * max(half), side.end
+    at, half = axes @ side.middle, [max(side.half(a), _MIN_HALF_WIDTH) for a in axes[:2]]
+    thick, begin = 0.35 * _MIN_HALF_WIDTH + 0.06 * max(half), side.end
     low = np.array([at[0] - half[0], at[1] - half[1], begin])
     high = np.array([at[0] + half[0], at[1] + half[1], begin + thick])
     side.add(link.name, colour[0], block(low, high, axes))
@@ -204,7 +204,9 @@ def _ram(side: _Side, link: Link, carrier: str, colour: tuple[str, str]) -> None
     """A bar as long as its travel, and round it the housing that it slides in."""
     axes = frame_along(side.outwards)
     at, begin = axes @ side.middle, side.end
-    half = float(np.clip(min(side.half(axes[0]), side.half(axes[1])), _LEAST, 2.0 * _LEAST))
+    half = float(
+        np.clip(min(side.half(axes[0]), side.half(axes[1])), _MIN_HALF_WIDTH, 2.0 * _MIN_HALF_WIDTH)
+    )
     ends = np.array(_travel(link)) * float(link.direction @ side.outwards)
     first, last = float(ends.min()), float(ends.max())
     deep = 3.0 * half  # of the housing
@@ -232,8 +234,8 @@ def _disc(side: _Side, link: Link, carrier: str, colour: tuple[str, str]) -> Non
     axes = frame_along(side.outwards)
     centre = link.point + ((side.middle - link.point) @ link.direction) * link.direction
     at = axes @ centre
-    radius = max(side.half(axes[0]), side.half(axes[1]), _LEAST)
-    thick, begin = 0.35 * _LEAST + 0.1 * radius, side.end
+    radius = max(side.half(axes[0]), side.half(axes[1]), _MIN_HALF_WIDTH)
+    thick, begin = 0.35 * _MIN_HALF_WIDTH + 0.1 * radius, side.end
     plain = cylinder(radius, radius, begin, begin + thick) + np.array([at[0], at[1], 0.0])
     # a mark on the rim shows that it turns
     mark = block(
@@ -250,10 +252,10 @@ def _cradle(side: _Side, link: Link, carrier: str, colour: tuple[str, str]) -> N
     """Trunnions on the line with arms to all that they swing, and bearings on the carrier."""
     axes = _frame(side, link.direction)
     at, line = axes @ side.middle, axes @ link.point
-    wide = max(side.half(axes[0]), _LEAST) + 15.0
-    deep = max(side.half(axes[1]), _LEAST)
-    plate, arm = 0.3 * _LEAST + 0.05 * wide, 0.25 * _LEAST + 0.06 * wide
-    round_line = max(1.2 * arm, 0.4 * _LEAST)
+    wide = max(side.half(axes[0]), _MIN_HALF_WIDTH) + 15.0
+    deep = max(side.half(axes[1]), _MIN_HALF_WIDTH)
+    plate, arm = 0.3 * _MIN_HALF_WIDTH + 0.05 * wide, 0.25 * _MIN_HALF_WIDTH + 0.06 * wide
+    round_line = max(1.2 * arm, 0.4 * _MIN_HALF_WIDTH)
     end = max(side.end, line[2] - round_line)
     # the line may lie above or below the plate: arms reach over both
     level = sorted((line[2] - round_line, end + plate))
@@ -300,7 +302,7 @@ def _arm(side: _Side, joints: Sequence[Link], colours: dict[str, str]) -> None:
     before = np.zeros(3)
     for k, link in enumerate(joints):
         carrier = joints[k + 1].name if k + 1 < len(joints) else FOUNDATION
-        size = _LEAST * (0.6 + 0.15 * k)
+        size = _MIN_HALF_WIDTH * (0.6 + 0.15 * k)
         # of a line the point next to where the arm has come is where the drum sits
         centre = link.point + ((before - link.point) @ link.direction) * link.direction
         if np.linalg.norm(before - centre) > 1.0:
@@ -316,7 +318,7 @@ def _foundation(table: _Side, tool: _Side) -> list[Drawn]:
     held = [b.corners.reshape(-1, 3) for b in tool.bodies if b.on == FOUNDATION]
     points = np.concatenate(held) if held else np.array([tool.low, tool.high])
     low, high = points.min(axis=0), points.max(axis=0)
-    margin, thick = 0.5 * _LEAST, 1.5 * _LEAST
+    margin, thick = 0.5 * _MIN_HALF_WIDTH, 1.5 * _MIN_HALF_WIDTH
     axis = int(np.argmax(np.abs(table.outwards)))
     bed = np.array([table.low - margin, table.high + margin])
     sense = float(table.outwards[axis])
@@ -326,7 +328,7 @@ def _foundation(table: _Side, tool: _Side) -> list[Drawn]:
         parts = parts or _column(bed, low, high)
     else:  # the spindle is level: a wall behind the tool's side, from the bed up
         wall = np.array([low - margin, high + margin])
-        wall[:, _UP] = tool.end, tool.end + 2.0 * _LEAST
+        wall[:, _UP] = tool.end, tool.end + 2.0 * _MIN_HALF_WIDTH
         wall[0, axis], wall[1, axis] = min(wall[0, axis], bed[0, axis]), high[axis] + margin
         bed[1, _UP] = max(bed[1, _UP], wall[1, _UP])
         parts = [block(*wall)]
@@ -335,7 +337,7 @@ def _foundation(table: _Side, tool: _Side) -> list[Drawn]:
 
 def _portal(bed: Array, low: Array, high: Array) -> list[Array]:
     """Four legs below the ends of two rails; the bed grows to stand below them."""
-    leg = _LEAST + 0.03 * (high[0] - low[0])
+    leg = _MIN_HALF_WIDTH + 0.03 * (high[0] - low[0])
     bed[0, :2] = np.minimum(bed[0, :2], low[:2] - leg)
     bed[1, :2] = np.maximum(bed[1, :2], high[:2] + leg)
     out = []
@@ -348,11 +350,11 @@ def _portal(bed: Array, low: Array, high: Array) -> list[Array]:
 
 def _column(bed: Array, low: Array, high: Array) -> list[Array]:
     """A column behind everything, with a beam to what it carries."""
-    back, deep = max(bed[1, 1], high[1]), 2.0 * _LEAST
+    back, deep = max(bed[1, 1], high[1]), 2.0 * _MIN_HALF_WIDTH
     beam = block(np.array([low[0], high[1] - 1.0, low[_UP]]), np.array([high[0], back, high[_UP]]))
     bed[1, 1] = back + deep
-    foot = np.array([low[0] - 0.5 * _LEAST, back, bed[0, _UP]])
-    return [beam, block(foot, np.array([high[0] + 0.5 * _LEAST, back + deep, high[_UP]]))]
+    foot = np.array([low[0] - 0.5 * _MIN_HALF_WIDTH, back, bed[0, _UP]])
+    return [beam, block(foot, np.array([high[0] + 0.5 * _MIN_HALF_WIDTH, back + deep, high[_UP]]))]
 
 
 _UP = 2  # index of Z, along which the tool points on every machine

@@ -17,7 +17,7 @@ from matstd.twin.units import DEG
 MAX_POSITIONS = 40_000
 """Positions of one page: of a longer program every second, third ... is left out."""
 
-_STILL = 1e-9  # an axis that moves less has not moved, mm or rad
+_SMALLEST_MOTION = 1e-9  # an axis that moves less has not moved, mm or rad
 
 _STEP = 6.0 * DEG
 """Between two positions while something turns, rad: even steps between them are 0.15 % short."""
@@ -165,7 +165,9 @@ def last_moves(q: Array) -> IntArray:
         array([ 0,  1,  1, -1])
     """
     step = np.diff(q, axis=0, prepend=q[:1])
-    return last_signs(np.where(np.abs(step) > _STILL, np.sign(step), 0.0)).astype(np.int64)
+    return last_signs(np.where(np.abs(step) > _SMALLEST_MOTION, np.sign(step), 0.0)).astype(
+        np.int64
+    )
 
 
 def _between(

@@ -8,7 +8,7 @@ import numpy as np
 from matstd.twin.frames import Array, unit
 
 FOUNDATION = "f"  # what carries the bodies that do not move; other names are those of links
-_ROUND = 40  # sides of a cylinder
+_CYLINDER_SIDES = 40  # sides of a cylinder
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,7 +40,7 @@ def block(low: Array, high: Array, axes: Array | None = None) -> Array:
 
 def cylinder(low_radius: float, high_radius: float, low: float, high: float) -> Array:
     """Upright, or a cone; with its ends."""
-    angle = np.linspace(0.0, 2.0 * np.pi, _ROUND + 1)
+    angle = np.linspace(0.0, 2.0 * np.pi, _CYLINDER_SIDES + 1)
     ring = np.column_stack([np.cos(angle), np.sin(angle)])
     below, above = (
         np.column_stack([r * ring, np.full(len(ring), z)])

@@ -24,7 +24,7 @@ from matstd.twin.units import UM, URAD
 _COLUMNS = 4  # maps in a row: their numbers stay readable in print
 _PLANE = 31  # values of each reading of a map of S
 _CURVE = 121  # values of the reading of a curve of S
-_STILL = 1e-3  # relative spread of S below which a parameter is the same everywhere
+_UNIFORM_SPREAD = 1e-3  # relative spread of S below which a parameter is the same everywhere
 _BASES, _STEPS = 16, 7  # poses and values along each reading that show what S depends on
 
 
@@ -100,7 +100,9 @@ def maps_of_S(study: Study) -> Figure:
     """One small map for every parameter whose S depends on the pose."""
     chain, influence = study.chain, _influence(study)
     # variances against the mean square of S: rounding is 1e-30, anything real far above
-    matters = influence > _STILL**2 * np.mean(study.sensitivity**2, axis=0)[:, None] + 1e-20
+    matters = (
+        influence > _UNIFORM_SPREAD**2 * np.mean(study.sensitivity**2, axis=0)[:, None] + 1e-20
+    )
     moving = np.flatnonzero(matters.any(axis=1))
     if not len(moving):
         return nothing("No sensitivity depends on the pose.")

@@ -20,9 +20,9 @@ from matstd.twin.record import Run, Touches
 from matstd.twin.units import UM
 from matstd.twin.words import in_own_unit
 
-GRAIN = 0.02  # of the corners of bodies, mm; larger ones are coarser
+CORNER_STEP = 0.02  # of the corners of bodies, mm; larger ones are coarser
 
-LONG = 4000
+LONG_RUN = 4000
 """Touches from which less is kept of each: fewer columns to plot, residuals at one noise."""
 
 MOST_COLUMNS, FEWER_COLUMNS = 40, 10  # recorded columns that can be plotted; of a long run
@@ -152,7 +152,7 @@ def _columns(touches: Touches) -> list[TREE]:
     known = dict(variables(touches))
     known |= {name: values for name, values in touches.value.items() if np.ptp(values) > 0.0}
     names = sorted(known, key=lambda name: name != "time_s")
-    most = MOST_COLUMNS if len(touches) < LONG else FEWER_COLUMNS
+    most = MOST_COLUMNS if len(touches) < LONG_RUN else FEWER_COLUMNS
     out = []
     for name in names[:most]:
         label, values = axis_of(name, known[name])
@@ -185,7 +185,7 @@ def _body(touches: Touches, known: Array | None) -> TREE | None:
     if not parts:
         return None
     corners = np.concatenate(parts).reshape(-1)
-    grain = max(GRAIN, float(np.abs(corners).max()) / 32000.0)
+    grain = max(CORNER_STEP, float(np.abs(corners).max()) / 32000.0)
     return packed(corners, "i2", unit="mm", grain=grain)
 
 
@@ -283,7 +283,7 @@ def _residuals(board: Board) -> TREE:
     last, first = board.fit.noise.factor, board.errors(()).s
     columns = board.residuals(last).T / UM
     change = None
-    if len(board.fit.run) < LONG and abs(np.log(first / last)) > 1e-3:
+    if len(board.fit.run) < LONG_RUN and abs(np.log(first / last)) > 1e-3:
         change = [_small(c) for c in board.residuals(first).T / UM - columns]
     return {"last": last, "first": first, "columns": packed(columns, "f4"), "change": change}
 

@@ -13,12 +13,12 @@ MIN_POINTS = 4  # distinct points of a feature from which a surface is drawn bet
 MAX_MISFIT = 0.05  # distance of a point from the ball that is drawn through it, mm
 MIN_TURN = 0.3  # spread of normals from which a feature can be a ball
 MAX_RADIUS = 60.0  # of a ball, mm; larger ones are faces that bend
-ROUND = 16  # meridians of a ball
+MERIDIANS = 16  # meridians of a ball
 
 MOST_TRIANGLES = 20_000
 """Of all features together; of more, every second, third ... point is left out."""
 
-SUNK = 0.15  # depth of surfaces below their points, mm, so that these stand before them
+SURFACE_DEPTH = 0.15  # depth of surfaces below their points, mm, so that these stand before them
 
 
 def touched_bodies(touches: Touches) -> list[Array]:
@@ -57,11 +57,11 @@ def _ball(point: Array, normal: Array) -> tuple[Array, float] | None:
 
 def _sphere(centre: Array, radius: float) -> Array:
     """Triangles of a ball."""
-    turn = np.linspace(0.0, 2.0 * np.pi, ROUND + 1)
-    tilt = np.linspace(-0.5 * np.pi, 0.5 * np.pi, ROUND // 2 + 1)
+    turn = np.linspace(0.0, 2.0 * np.pi, MERIDIANS + 1)
+    tilt = np.linspace(-0.5 * np.pi, 0.5 * np.pi, MERIDIANS // 2 + 1)
     T, L = np.meshgrid(turn, tilt, indexing="ij")
     unit = np.stack([np.cos(L) * np.cos(T), np.cos(L) * np.sin(T), np.sin(L)], axis=-1)
-    grid = centre + (radius - SUNK) * unit
+    grid = centre + (radius - SURFACE_DEPTH) * unit
     a, b, c, d = grid[:-1, :-1], grid[1:, :-1], grid[1:, 1:], grid[:-1, 1:]
     return np.concatenate([np.stack(t, axis=2).reshape(-1, 3, 3) for t in ((a, b, c), (a, c, d))])
 
@@ -84,4 +84,4 @@ def _surface(point: Array, normal: Array) -> Array:
     sides = np.linalg.norm(flat[found] - flat[np.roll(found, 1, axis=1)], axis=2)
     longest = sides.max(axis=1)
     kept = found[longest < 4.0 * np.median(longest)]
-    return np.asarray((point - SUNK * normal)[kept])
+    return np.asarray((point - SURFACE_DEPTH * normal)[kept])

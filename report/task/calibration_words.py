@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from matstd.artefact.body import Material, Verdict
-from matstd.artefact.certify import GAP, CalibrationFit, CommonCause
+from matstd.artefact.certify import MAX_SPACING, CalibrationFit, CommonCause
 from matstd.artefact.layout import DEFAULT_MODULUS
 from matstd.report.numbers import digits, um
 from matstd.twin.units import GPA, T_REF, UM, URAD
@@ -35,7 +35,7 @@ def calibration_lines(found: CalibrationFit) -> list[str]:
         lines.append(text)
     if found.unseen:
         lines.append(
-            f"no dense line of points (up to {GAP:g} mm apart) along both directions of "
+            f"no dense line of points (up to {MAX_SPACING:g} mm apart) along both directions of "
             f"{', '.join(found.unseen)}: waves of {_um(found.waviness)} rms are assumed in each "
             "direction without one (--waviness-um)"
         )

@@ -25,13 +25,15 @@ from matstd.report.words import sizes, structure_words
 from matstd.twin.library import title_of
 from matstd.twin.words import listed
 
-NAMED = 3  # quantities of the geometry that are written out; of more, the first ones
+MAX_WRITTEN_OUT = 3  # quantities of the geometry that are written out; of more, the first ones
 
-BROKEN = 1.1
+BROKEN_PROMISE = 1.1
 """Ratio of error to promise from which a prediction is worse than promised; the figures themselves
 scatter by a few per cent."""
 
-HOLDS = 1.25  # errors of left-out blocks over their uncertainties up to which a model holds there
+HOLDS_BELOW = (
+    1.25  # errors of left-out blocks over their uncertainties up to which a model holds there
+)
 
 
 def part_lines(result: Diagnosis) -> list[tuple[str, str]]:
@@ -67,7 +69,9 @@ def _geometry(part: GeometryPart) -> str:
 
 
 def _rows(rows: Sequence[GeometryRow]) -> str:
-    words = [f"{quantity_name(r)} {estimate_words(r.estimate, r.unit)}" for r in rows[:NAMED]]
+    words = [
+        f"{quantity_name(r)} {estimate_words(r.estimate, r.unit)}" for r in rows[:MAX_WRITTEN_OUT]
+    ]
     more = len(rows) - len(words)
     return f"{', '.join(words)} and {more} more" if more else listed(words)
 
@@ -122,7 +126,7 @@ def _remains(part: Remainder, repeats: Repeatability) -> str:
         return f"{words}; it depends on no recorded variable"
     names = dict.fromkeys(noun(v) for p in part.patterns for v in p.variables)
     first = structure_words(part.patterns[0])
-    others = [n for n in names if n not in first][:NAMED]
+    others = [n for n in names if n not in first][:MAX_WRITTEN_OUT]
     also = f" (also {listed(others)})" if others else ""
     it = "it " if part.patterns[0].shape in (Shape.SMOOTH, Shape.DRIVER) else ""
     return f"{words}; {it}{first}{also}"
@@ -150,14 +154,16 @@ def repeatability_words(found: Repeatability, scatter: float) -> str:
 def promise_words(after: Promise, before: Promise | None = None) -> str:
     """Errors to expect at other places and at the same touches; and where the model fails."""
     fall = "" if before is None else f"{microns(before.elsewhere)} → "
-    fails = [d for d in after.domains if d.ratio > HOLDS]
+    fails = [d for d in after.domains if d.ratio > HOLDS_BELOW]
     words = (
         f"{fall}{microns(after.elsewhere)} at other places within the probed range, "
         f"{microns(after.same)} at the same touches"
     )
     if not fails:
         return words
-    worst = listed([f"{noun(d.name)} ({digits(d.ratio, 2)} times)" for d in fails[:NAMED]])
+    worst = listed(
+        [f"{noun(d.name)} ({digits(d.ratio, 2)} times)" for d in fails[:MAX_WRITTEN_OUT]]
+    )
     return f"{words}; blocks left out by {worst} are worse than their uncertainty"
 
 
@@ -170,7 +176,7 @@ def promise_sentence(
         promised: Errors to expect when the model was made.
         others: Effects of another run in the model, which the promise excludes.
     """
-    limit = BROKEN * promised.elsewhere
+    limit = BROKEN_PROMISE * promised.elsewhere
     word = "worse than promised" if found.rms > limit else "as good as promised"
     why = ""
     if found.expected > limit:

@@ -18,7 +18,7 @@ from matstd.twin.numbers import rms
 from matstd.twin.units import DEG
 from matstd.twin.words import listed
 
-_NOTHING = 5e-4  # of the error that remains unknown
+_NEGLIGIBLE_SHARE = 5e-4  # of the error that remains unknown
 _NAMED = 4  # effects of low power that are named
 
 COVERED, NEARLY_ALL, FAR = 0.5, 0.9, 3.0
@@ -138,7 +138,9 @@ def identification_sentence(placement: Placement) -> str:
 def _cost_or_gain(placement: Placement, change: float) -> str:
     verb = "cost" if change > 0.0 else "gain"
     verb += "s" if len(placement.standard.proving) == 1 else ""
-    return f"{verb} {percent(abs(change))}" if abs(change) > _NOTHING else f"{verb} nothing"
+    return (
+        f"{verb} {percent(abs(change))}" if abs(change) > _NEGLIGIBLE_SHARE else f"{verb} nothing"
+    )
 
 
 def proof_sentence(placement: Placement) -> str:

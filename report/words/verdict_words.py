@@ -19,9 +19,11 @@ from matstd.twin.units import DEG
 from matstd.twin.words import listed
 
 PERIODS_NAMED = 4  # indistinguishable periods that are named, the longest ones
-WITHIN = 0.1  # excess over the stated noise that is not reported: half a per cent of its size
+UNREPORTED_EXCESS = (
+    0.1  # excess over the stated noise that is not reported: half a per cent of its size
+)
 
-HALF = 0.5
+EXPLAINING_SHARE = 0.5
 """Share of the mean square beyond the stated noise that a pattern must have to explain it."""
 
 _NUMBERS = {1: 3, 2: 2, 3: 1}
@@ -43,7 +45,7 @@ def _unexplained(diagnosis: Diagnosis) -> str:
     beyond = excess(fit)
     share = min(max((s.share for s in diagnosis.left), default=1.0), 1.0)
     whole = stated * fit.noise.factor
-    if whole**2 * share < HALF * beyond**2 or beyond < WITHIN * stated:
+    if whole**2 * share < EXPLAINING_SHARE * beyond**2 or beyond < UNREPORTED_EXCESS * stated:
         return (
             f"{microns(whole * math.sqrt(share))} of the residual of {microns(whole)} rms "
             f"(stated noise: {microns(stated)})"

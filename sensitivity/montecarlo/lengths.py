@@ -22,7 +22,7 @@ from matstd.twin.frames import Array, IntArray
 BINS = 2048  # a quantile is then read to 0.05 % of the longest length
 _POSES_A_BLOCK = 256  # lengths of a block stay in a core's second cache
 _DRAWS_A_BLOCK = 512  # with 256 poses the packing of both factors is small beside the product
-_KEPT = 2**25  # lengths held at once for the worst poses: 128 MiB
+_LENGTHS_HELD = 2**25  # lengths held at once for the worst poses: 128 MiB
 _MACHINES_A_PART = 64  # whose worst poses one thread looks for
 
 Sizes = NDArray[np.float32]  # lengths kept for the worst poses, (N, S); no column where none are
@@ -76,7 +76,7 @@ def count_lengths(
         worst=np.zeros(n, dtype=np.int64),
     )
     count = (compiled_count() if use_compiled else None) or _count
-    lot = _DRAWS_A_BLOCK * max(1, _KEPT // n // _DRAWS_A_BLOCK) if worst[0] else draws
+    lot = _DRAWS_A_BLOCK * max(1, _LENGTHS_HELD // n // _DRAWS_A_BLOCK) if worst[0] else draws
     # our threads fill the cores; those of BLAS on top would only wait for each other
     with one_blas_thread(), ThreadPoolExecutor(threads or cpu_count() or 1) as pool:
         for machines in blocks(draws, lot):

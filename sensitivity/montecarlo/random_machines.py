@@ -25,7 +25,7 @@ from matstd.twin.frames import Array
 from matstd.twin.numbers import rms_length
 from matstd.twin.record import at_poses
 
-WORST = 0.05  # share of the poses that counts as the worst ones of a machine
+WORST_SHARE = 0.05  # share of the poses that counts as the worst ones of a machine
 
 
 def volumetric(
@@ -84,7 +84,7 @@ def volumetric(
     draws -= draws % MACHINES_A_BATCH if digits else 0  # batches of equal size
     width = bin_width(rms(population, q, length))
     reference = reference or len(q)
-    worst = (reference, max(1, round(WORST * reference))) if recurrence else (0, 0)
+    worst = (reference, max(1, round(WORST_SHARE * reference))) if recurrence else (0, 0)
     seed = seed_words(rng)
 
     def prepare() -> SharedArrays:

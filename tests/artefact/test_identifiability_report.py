@@ -107,7 +107,7 @@ def test_touches_in_a_second_set_up_have_their_own_six_numbers(criterion, reques
 
 
 def test_a_stylus_that_reaches_nothing_is_said(criterion, requests, monkeypatch):
-    monkeypatch.setattr(module, "STYLUS", 5000.0)
+    monkeypatch.setattr(module, "STYLUS_EXTENSION", 5000.0)
     monkeypatch.setattr(module, "SETUPS", {})
     (only,) = alternatives(criterion, requests, np.random.default_rng(8))
     assert not only.is_possible

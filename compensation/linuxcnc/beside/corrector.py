@@ -17,14 +17,14 @@ import time
 from typing import Any, Optional
 
 LOOK_PERIOD = 0.002  # between two looks at the pins, s
-STILL = 1e-6  # smallest change of a position that is a motion, mm or degrees
+SMALLEST_MOTION = 1e-6  # smallest change of a position that is a motion, mm or degrees
 LONGEST_STEP = 0.005  # longest time that one step may stand for, s: a pause is no licence to jump
 
-LOST = 25
+MAX_OTHER_OFFSETS = 25
 """Looks in a row at which the control has another offset than it was given, until that counts."""
 
-AHEAD = 0.01  # time in which an offset that is taken back has really gone, s
-AGAIN = 0.5  # between two tries to reach the service, s
+SETTLING_TIME = 0.01  # time in which an offset that is taken back has really gone, s
+RECONNECT_PERIOD = 0.5  # between two tries to reach the service, s
 
 
 class Giver:
@@ -90,7 +90,7 @@ class Giver:
         theirs = [round(v / self.scale) for v in requested]
         ours = [c - b for c, b in zip(self.counts, self.base)]
         self.astray = self.astray + 1 if any(abs(a - b) > 1 for a, b in zip(theirs, ours)) else 0
-        if self.astray > LOST:
+        if self.astray > MAX_OTHER_OFFSETS:
             self.base = [c - v for c, v in zip(self.counts, theirs)]
             self.given, self.astray = [v * self.scale for v in theirs], 0
 
@@ -110,9 +110,9 @@ def room_of(
     share = min(1.0, rate / abs(speed)) if speed else 1.0
     below, above = low - position, high - position
     if speed < 0.0:
-        below = min(below - AHEAD * speed, 0.0) * share
+        below = min(below - SETTLING_TIME * speed, 0.0) * share
     if speed > 0.0:
-        above = max(above - AHEAD * speed, 0.0) * share
+        above = max(above - SETTLING_TIME * speed, 0.0) * share
     return below, above
 
 
@@ -144,7 +144,7 @@ class Link:
             return None
 
     def _connected(self, now: float) -> bool:
-        if now - self.tried_at < AGAIN:
+        if now - self.tried_at < RECONNECT_PERIOD:
             return False
         self.tried_at = now
         link = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
@@ -252,7 +252,7 @@ class Corrector:
         passed = max(now - self.looked_at, 1e-4)
         moved = {x: at[x] - self.at.get(x, at[x]) for x in at}
         for x, way in moved.items():
-            if abs(way) > STILL:
+            if abs(way) > SMALLEST_MOTION:
                 self.ways[x] = 1 if way > 0.0 else -1
         self.at, self.looked_at = at, now
         return {x: way / passed for x, way in moved.items()}

@@ -19,7 +19,9 @@ from typing import Any, TextIO
 import hal
 
 PROBING = 5  # type of motion of a G38 move
-ENOUGH = 0.05  # way after which the direction of a stroke is known to eleven digits, mm
+DIRECTION_KNOWN_AFTER = (
+    0.05  # way after which the direction of a stroke is known to eleven digits, mm
+)
 
 NEVER = 1e9
 
@@ -66,7 +68,7 @@ def watch(component: Any, stream: TextIO, joints: int) -> None:
             here = snapshot(component, joints)
             way = [b - a for a, b in zip(begin[:3], here[:3])]
             length = math.sqrt(sum(v * v for v in way))
-            if length > ENOUGH:
+            if length > DIRECTION_KNOWN_AFTER:
                 direction = [v / length for v in way]
                 travel = ask(stream, {"joints": begin, "direction": direction})
                 start = sum(d * p for d, p in zip(direction, begin))
