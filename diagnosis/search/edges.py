@@ -7,7 +7,6 @@ the fit, the slip is offered beside all other effects, and the test for gross er
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from math import comb
 
 import numpy as np
 
@@ -79,12 +78,10 @@ def _edges(touches: Touches, instants: Array) -> Iterator[tuple[IntArray, bool]]
 def _by_chance(touches: int, gross: int, length: int, found: int) -> float:
     """Probability that of some gross errors anywhere so many or more lie in one short row.
 
-    The hypergeometric distribution; `scipy.stats` takes half a second to import.
-
     Example:
         >>> round(_by_chance(4, 2, 2, 2) * 6, 9)
         1.0
     """
-    counts = range(found, min(gross, length) + 1)
-    ways = sum(comb(gross, k) * comb(touches - gross, length - k) for k in counts)
-    return ways / comb(touches, length)
+    from scipy.stats import hypergeom  # half a second, and few runs need it
+
+    return float(hypergeom.sf(found - 1, touches, gross, length))
