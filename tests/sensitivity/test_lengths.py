@@ -62,7 +62,7 @@ def test_poses_that_are_equally_bad_all_count(use_compiled):
 def test_lots_of_machines_change_nothing(task, monkeypatch):
     G, theta, width, _ = task
     whole = count_lengths(G, theta, width, worst=(70, 4))
-    monkeypatch.setattr("matstd.sensitivity.montecarlo.lengths._KEPT", 1)
+    monkeypatch.setattr("matstd.sensitivity.montecarlo.lengths._LENGTHS_HELD", 1)
     cut = count_lengths(G, theta, width, worst=(70, 4))
     for name in ("sum", "squares", "histogram", "worst"):
         np.testing.assert_array_equal(getattr(cut, name), getattr(whole, name), err_msg=name)
