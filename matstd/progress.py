@@ -10,6 +10,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from statistics import median
 from typing import TYPE_CHECKING, TextIO
 
 from matstd.stop import raise_if_asked
@@ -23,13 +24,12 @@ TRUSTED_FRACTION = (
 )
 WORTH_SHOWING = 0.04  # reported fraction from which on a time left is shown
 
-CAUTION = 0.15
-"""Share by which the first estimate of several stages is raised; none at the end. What is shown may
-fall at once, but never rises, so an estimate that begins too short stays so."""
+MIN_STAGES = 3  # finished stages from which their median says how fast this machine is
+MIN_SECONDS = 1.0  # planned for a stage, below which its duration says nothing about the machine
 
-SLOWER = 6
-"""Power by which a time left that is too short runs slower: at half of the estimate a sixtieth. The
-designs of two machines are within a quarter at half time with these two."""
+SLOWER = 4
+"""Power by which a time left that is too short runs slower, since what is shown never rises: at
+half of the estimate a sixteenth."""
 
 
 @dataclass(slots=True)
@@ -46,10 +46,12 @@ class TimeLeft:
     at: float = 0.0
     shown: float = math.inf
     shown_at: float = 0.0
+    entered: float = 0.0  # when its stage began
+    _paces: list[float] = field(default_factory=list)  # durations of finished stages over the plan
     _before: dict[str, float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        self.at = self.shown_at = self.begun
+        self.at = self.shown_at = self.entered = self.begun
         total = 0.0
         for name, share in self.shares.items():
             self._before[name] = total
@@ -59,7 +61,11 @@ class TimeLeft:
         """Take what the work reports; a stage without a share changes nothing."""
         if stage not in self.shares:
             return
-        self.stage = stage
+        if stage != self.stage:
+            planned = self.shares.get(self.stage, 0.0) * self.usual
+            if planned >= MIN_SECONDS:
+                self._paces.append((now - self.entered) / planned)
+            self.stage, self.entered = stage, now
         inside = done / total if total > 0 else 0.0
         position = self._before[stage] + self.shares[stage] * min(inside, 1.0)
         if position > self.position:
@@ -86,8 +92,11 @@ class TimeLeft:
         done = self._fraction(now)
         if self.position < WORTH_SHOWING:
             return None
-        caution = CAUTION * (1.0 - done) if len(self.shares) > 1 else 0.0  # no stage is to come
-        estimate = (now - self.begun) * (1.0 - done) / done * (1.0 + caution)
+        if len(self._paces) >= MIN_STAGES and math.isfinite(self.usual):
+            # a stage whose work is not known beforehand says little about the others
+            estimate = median(self._paces) * self.usual * (1.0 - done)
+        else:
+            estimate = (now - self.begun) * (1.0 - done) / done
         if math.isinf(self.shown):
             self.shown = estimate
         else:  # where the estimate has grown, the shown one waits for it: nearly, but it falls

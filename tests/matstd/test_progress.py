@@ -38,6 +38,20 @@ def test_the_time_left_does_not_grow() -> None:
     assert watch.words(100.0) == "50 %, about 10 s left"
 
 
+@pytest.mark.parametrize(("pace", "drawn"), [(1.0, 5.0), (1.0, 30.0), (2.0, 5.0)])
+def test_a_stage_that_is_sooner_done_says_nothing_about_the_others(
+    pace: float, drawn: float
+) -> None:
+    """Three stages show how fast the machine is; the draws take a sixth of their plan, or all."""
+    planned = {"reach": 10.0, "balls": 10.0, "choice": 10.0, "draws": 30.0, "report": 40.0}
+    watch, now = Watch.of(planned, 0.0), 0.0
+    for stage in planned:
+        watch.report(stage, 0, 1, now)
+        now += pace * (drawn if stage == "draws" else planned[stage])
+    begun = now - pace * planned["report"]
+    assert watch.left.left(begun) == pytest.approx(pace * planned["report"], rel=1e-3)
+
+
 def test_turns_that_cannot_be_foreseen_are_counted() -> None:
     """A search begins anew, and its share with it: no time is promised that will not hold."""
     watch, stated = watched(), []
