@@ -50,7 +50,9 @@ def feasibility(brief: Brief) -> Feasibility:
     found = travels(brief)
     if found.against:
         wishes = () if found.wish else nearest_in_reach(brief, found.tried)
-        nearest = found.wish or " or ".join(wishes) or f"no other {TRIED_CHANGES} alone"
+        nearest = (
+            found.wish or " or ".join(wishes) or f"of those that were tried, no {TRIED_CHANGES}"
+        )
         beyond = NotReachable(f"{brief.path}: {found.against}; {nearest} would do")
         return Feasibility(found.tried, found.poses, refusal=beyond)
     if brief.options.family in ("auto", "wavy", "balls"):  # no small face is a condition
