@@ -29,8 +29,17 @@ Step = tuple[str, str] | None  # a command and why, None for none
 
 
 def called(command: str, *words: object, more: str = "") -> str:
-    """A command line: words are quoted where they need be, `more` stands as it is."""
-    line = shlex.join(["matstd", command, *(str(word) for word in words)])
+    """A command line: words are quoted where they need be, `more` stands as it is.
+
+    An output that is there already gets another name, since no command writes over it unasked.
+    """
+    stated = [str(word) for word in words]
+    output = stated.index("-o") + 1 if "-o" in stated else None
+    if output is not None and Path(stated[output]).exists():
+        from matstd.twin.files.whole import free_name  # help and refusals need no numpy
+
+        stated[output] = str(free_name(Path(stated[output])))
+    line = shlex.join(["matstd", command, *stated])
     return f"{line} {more}".rstrip()
 
 

@@ -117,6 +117,18 @@ def test_the_next_command_is_one_that_the_command_line_reads(call, tmp_path, mon
     assert following(next_line(parsed(shlex.split(call)))) in COMMANDS
 
 
+def test_the_next_command_writes_over_nothing(tmp_path, monkeypatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("run.csv").write_text("", encoding="utf-8")
+    args = parsed(["compare", "run.csv", "-o", "OUT"])
+    for taken, stated in (("", "diagnosis"), ("diagnosis", "diagnosis-2")):
+        if taken:
+            Path(taken).mkdir()
+        assert (
+            next_line(args) == f"next: matstd diagnose run.csv -o {stated}   (what the model lacks)"
+        )
+
+
 @pytest.mark.parametrize("call", ENDS)
 def test_the_next_command_is_the_last_line(call, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
