@@ -25,7 +25,7 @@ COARSE, FULL = 50, 5
 """Points of a grid that are tried beside every simple shape, and the best pairs whose second shape
 is then scanned in full: a third of the time of full scans, and the same laws."""
 
-MOST_ALIKE = 3
+MOST_OF_ONE_SHAPE = 3
 """Products of one variable's shape that are kept: what looks like a line over a temperature (a
 play, a kink, a settling over time) would crowd out other shapes of the other variable."""
 
@@ -239,7 +239,7 @@ def product_formulas(
         ordered = parts if parts[0].factor.driver == drivers[0] else parts[::-1]
         words = [(i, part.factor.shape.word) for i, part in enumerate(ordered)]
         one = candidate(space, grids.field, bearer, ordered)
-        if max(met[word] for word in words) < MOST_ALIKE and one.law.name not in (
+        if max(met[word] for word in words) < MOST_OF_ONE_SHAPE and one.law.name not in (
             c.law.name for c in out
         ):
             met.update(words)

@@ -15,7 +15,7 @@ from matstd.twin.record import Touches
 DECIDED = float(np.log(20.0))
 """Log odds from which a law is decided against another."""
 
-MOST_RIVALS, MOST_ALIKE, MOST_SHAPES = 9, 6, 2
+MOST_RIVALS, MOST_CARRIERS, MOST_SHAPES = 9, 6, 2
 """Rivals of one law that a plan serves: of them carriers that do the same at every touch of the
 run, and other shapes of the same carrier and variables."""
 
@@ -73,7 +73,7 @@ def hypotheses(learning: Learning) -> tuple[Hypothesis, ...]:
 
 def undecided(one: LearntLaw) -> list[tuple[Effect, float]]:
     """Rivals of a law that its run has not decided against, with the odds against them."""
-    alike = [replace(one.law, carrier=carrier) for carrier in one.alike[:MOST_ALIKE]]
+    alike = [replace(one.law, carrier=carrier) for carrier in one.alike[:MOST_CARRIERS]]
     found: list[tuple[Effect, float]] = [(law, 0.0) for law in alike]
     if one.library is not None and one.score - one.library.score < DECIDED:
         found.append((one.library.effect, one.score - one.library.score))

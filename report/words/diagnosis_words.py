@@ -43,7 +43,7 @@ _PARTS = {
 }
 """Carriers of an error that are no component of an axis."""
 
-MOST_ALIKE = 4  # carriers that are named beside the first
+MOST_NAMED_CARRIERS = 4  # carriers that are named beside the first
 ALL_NUMBERS = 7  # numbers of an effect that are written out; of more, only those that sum them up
 
 
@@ -150,8 +150,11 @@ def wrong_words(wrong: Wrong) -> str:
 def carriers_alike(wrong: Wrong) -> str:
     """Other errors that may be it: `EBX, EBZ or 3 others`."""
     names = [_PARTS.get(name, name) for name in wrong.alike]
-    if len(names) > MOST_ALIKE:
-        names = [*names[: MOST_ALIKE - 1], f"{len(names) - MOST_ALIKE + 1} others"]
+    if len(names) > MOST_NAMED_CARRIERS:
+        names = [
+            *names[: MOST_NAMED_CARRIERS - 1],
+            f"{len(names) - MOST_NAMED_CARRIERS + 1} others",
+        ]
     return listed(names, "or")
 
 
