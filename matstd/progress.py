@@ -19,9 +19,8 @@ from matstd.twin.compute import Progress
 if TYPE_CHECKING:
     from rich.console import Console
 
-TRUSTED_FRACTION = (
-    0.02  # fraction done from which on the pace of this run says how long the whole takes
-)
+TRUSTED_FRACTION = 0.02
+"""Fraction done from which on the pace of this run says how long the whole takes."""
 WORTH_SHOWING = 0.04  # reported fraction from which on a time left is shown
 
 MIN_STAGES = 3  # finished stages from which their median says how fast this machine is

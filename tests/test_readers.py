@@ -23,8 +23,18 @@ EACH = 60
 LONGEST = 900
 """Longest line of a refusal, characters."""
 NAMES = (
-    "machine", "errors", "run", "pose", "sensors", "project", "standard", "model", "log", "program"
-)  # fmt: skip
+    "machine",
+    "errors",
+    "run",
+    "pose",
+    "sensors",
+    "project",
+    "standard",
+    "model",
+    "log",
+    "program",
+)
+"""Fmt: skip."""
 
 OTHERS = (
     "holes", "laser", "encoders", "map", "mapped", "dh", "dialect", "workshop", "several",

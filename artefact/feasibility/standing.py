@@ -34,9 +34,8 @@ SEAT_TOLERANCE = 1.0
 
 Mesh = tuple[Array, np.ndarray]
 
-_HANGING_COSINE = (
-    0.5  # cosine between weight and the way out of the seat from which on a standard hangs
-)
+_HANGING_COSINE = 0.5
+"""Cosine between weight and the way out of the seat from which on a standard hangs."""
 _BALL_BESIDE = 100.0  # a bracket on the table holds a ball so far beside its face, mm
 
 _OVERHANG, _MORE = 40.0, 5.0
@@ -46,9 +45,8 @@ the middle of the table where that is larger: the example has 33.9 mm at its cor
 _SHIFTS = (1.0, 2.0, 5.0, 10.0, 20.0, 30.0, 50.0, 75.0, 100.0, 150.0, 200.0, 300.0, 400.0)
 """Displacements of a clamp that are tried, mm."""
 
-_POLYGON_SIDES = (
-    256  # sides of the polygon round a disc: 0.008 mm outside it at a diameter of 200 mm
-)
+_POLYGON_SIDES = 256
+"""Sides of the polygon round a disc: 0.008 mm outside it at a diameter of 200 mm."""
 
 _TURNS = ((0.0, 0.0, 0.0), (-90.0, 0.0, 0.0), (90.0, 0.0, 0.0), (0.0, 90.0, 0.0), (0.0, -90.0, 0.0))
 """Orientations of a standard that are tried, degrees."""

@@ -13,9 +13,8 @@ from matstd.artefact.body import Limits, graph_patch
 from matstd.twin.frames import Array
 from matstd.twin.units import DEG
 
-CONTROL_HEIGHTS = (
-    8  # control heights of a patch in u and v: enough for one wave, too few for ripples
-)
+CONTROL_HEIGHTS = 8
+"""Control heights of a patch in u and v: enough for one wave, too few for ripples."""
 
 _LIMIT_MARGIN = 1.15
 """Safety factor on the limits of curvature and slope, which are evaluated on grids."""

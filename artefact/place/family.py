@@ -36,9 +36,8 @@ class Family(StrEnum):
 MOST_COST = 1.02
 """Largest error over the workspace that a family may leave, relative to the best balls alone."""
 
-SECONDS_PER_TOUCH = (
-    3.6  # seconds a touch, with its share of the ways: 2.4 to 4.8 as planned for the examples
-)
+SECONDS_PER_TOUCH = 3.6
+"""Seconds a touch, with its share of the ways: 2.4 to 4.8 as planned for the examples."""
 
 CLEAR_LEAD = 1.05
 """Figure of balls alone, relative to the best family with a face, above which they are built."""

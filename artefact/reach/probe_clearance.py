@@ -9,9 +9,8 @@ from matstd.twin.errors import ShapeMismatch
 from matstd.twin.frames import Array, unit
 
 _GROWTH = 1.15  # ratio of neighbouring stations along the tool axis
-_MAX_THIN_RADIUS = (
-    4.0  # mm: up to this radius a cylinder is a row of balls on its axis, beyond it is wrapped
-)
+_MAX_THIN_RADIUS = 4.0
+"""mm: up to this radius a cylinder is a row of balls on its axis, beyond it is wrapped."""
 _WRAP_RATIO = 0.3  # radius of the wrapping balls, in radii of the cylinder
 _BALLS_OF_LOT = 50_000  # balls looked at together
 _PIECES = 6  # short cylinders in which the balls of a probe are gathered

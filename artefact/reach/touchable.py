@@ -26,9 +26,8 @@ from matstd.twin.units import DEG
 _WORDS = "U200"  # of a reason
 _START_HEIGHT = 400.0  # mm the ball comes down from, far above any standard
 _DESCENT_MARGIN = 1.0  # mm added to the ball on its way down
-ROUNDING = (
-    1e-9  # mm or rad: a reading at the very end of a travel is inside, whatever its last digit
-)
+ROUNDING = 1e-9
+"""mm or rad: a reading at the very end of a travel is inside, whatever its last digit."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -37,9 +37,8 @@ from matstd.twin.units import DEG
 Surfaces = Sequence[FreeformPatch | DatumSphere]
 
 _PITCHES = (5, 9, 15)  # points each way on a face
-_CANDIDATES_PER_TOUCH = (
-    2.0  # touches that can be made, for each that is wanted, on the coarsest grid that will do
-)
+_CANDIDATES_PER_TOUCH = 2.0
+"""Touches that can be made, for each that is wanted, on the coarsest grid that will do."""
 _TOUCHES_PER_BLOCK = 1000  # touches looked at together
 _POSE_CROWDING = 1.6  # even shares of the touches that one table pose may have
 _EDGE = 3.0  # mm a touch stays away from the trimmed edge of a face

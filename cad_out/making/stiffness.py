@@ -23,9 +23,8 @@ GRAVITY = 9.81e3  # in mm/s^2
 _MIN_FILLING = 0.02  # of a cube, below which it is left out
 _TO_TIP = 0.25  # of a cantilever's mass that swings with its end: 33/140, rounded up
 _SHARE = 0.2  # of a displacement, its standard uncertainty: beams within 8 %, screws idealised
-_BESIDE = (
-    0.25  # of an element, beside a foot: tall balls within 5 % of scikit-fem (2 to 12 % softer)
-)
+_BESIDE = 0.25
+"""Of an element, beside a foot: tall balls within 5 % of scikit-fem (2 to 12 % softer)."""
 _STIFF = 1e9  # N/mm that hold a node: ten thousand times a cube's own
 
 

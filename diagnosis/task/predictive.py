@@ -46,9 +46,8 @@ _GRID = 100  # values of s_b for every R
 _QUANTILES = 128  # values of s_p for every R'
 _COMPONENTS = 400  # of the mixtures between them: 0.01 % of U
 _MIN_VARIANCE_SHARE = 1e-12  # of a sum of variances: what is below counts as this
-_NEGLIGIBLE_LOG_ODDS = (
-    20.0  # logarithm of how much less probable than the most probable s_b: left out
-)
+_NEGLIGIBLE_LOG_ODDS = 20.0
+"""Logarithm of how much less probable than the most probable s_b: left out."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -53,9 +53,8 @@ from matstd.twin.record import Setup
 from matstd.twin.units import DEG, MINUTE, UM
 
 SEED = 0  # of the places that are tried first: the same log gives the same programs
-ROUGH_UNCERTAINTY = (
-    1.0 * UM
-)  # uncertainty of a touch where only the place of the standard is asked for, mm
+ROUGH_UNCERTAINTY = 1.0 * UM
+"""Uncertainty of a touch where only the place of the standard is asked for, mm."""
 OURS = (*REPORT_FILES, *SHEET_FILES, "programs/*")  # files that not every replan leaves
 
 

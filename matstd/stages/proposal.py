@@ -42,9 +42,8 @@ FACES = {280.0: 6, 240.0: 5, 200.0: 4, 0.0: 3}
 SHARE_OF_TRAVEL = 0.8
 """Size of a table over the shorter travel across the tool, where no size is stated."""
 
-WORKSPACE_OVER_BASE = (
-    1.25  # workspace over base: workpieces are a quarter larger than what is probed
-)
+WORKSPACE_OVER_BASE = 1.25
+"""Workspace over base: workpieces are a quarter larger than what is probed."""
 
 UPRIGHT, ON_ITS_SIDE = (0.0, 0.0, 0.0), (-90.0, 0.0, 0.0)
 """Ways to stand that are tried: on a face that looks along Z, or along Y; degrees."""

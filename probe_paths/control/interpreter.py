@@ -37,9 +37,8 @@ from matstd.twin.errors import BadFile
 from matstd.twin.machine import Chain
 from matstd.twin.words import not_read
 
-_OFF_LIMIT_FACTOR = (
-    1.05  # multiple of its limit by which a value is off when the program has to stop
-)
+_OFF_LIMIT_FACTOR = 1.05
+"""Multiple of its limit by which a value is off when the program has to stop."""
 
 
 def read_program(

@@ -110,9 +110,8 @@ def _schedule(head: str) -> tuple[VisitSchedule, float]:
     return schedule, number("after touch ", np.inf)
 
 
-MAX_DROPPED_SHARE = (
-    0.1  # share of the touches that may be refused at another place, each with its reason
-)
+MAX_DROPPED_SHARE = 0.1
+"""Share of the touches that may be refused at another place, each with its reason."""
 
 
 def planned_again(

@@ -36,9 +36,8 @@ USUAL = (Quantity.SQUARENESS, Quantity.SCALE, *ARM)
 SPANS = (Quantity.STRAIGHTNESS, Quantity.ANGULAR, Quantity.ROTARY_MOTION)
 """Curves, reported by their peak to valley."""
 
-MIN_SIGNIFICANCE = (
-    2.0  # standard uncertainties from which on a quantity is worth a line on the console
-)
+MIN_SIGNIFICANCE = 2.0
+"""Standard uncertainties from which on a quantity is worth a line on the console."""
 MAX_REPORTED = 8  # quantities reported on the console
 
 

@@ -24,9 +24,8 @@ from matstd.twin.frames import Array
 from matstd.twin.machine import Chain
 
 MAX_NAMED_PARAMETERS = 4  # parameters of a combination that are written out at most
-MIN_WEIGHT_SHARE = (
-    0.1  # a parameter below this share of the largest weight is left out of the words
-)
+MIN_WEIGHT_SHARE = 0.1
+"""A parameter below this share of the largest weight is left out of the words."""
 _FULL = 0.9995  # a correlation that rounds to 1.000
 _SAME = 1e-6  # relative, of two weights
 _SHAPES = {"sinusoidal": "sine", "sinusoidal@90": "cosine"}

@@ -31,9 +31,8 @@ BROKEN_PROMISE = 1.1
 """Ratio of error to promise from which a prediction is worse than promised; the figures themselves
 scatter by a few per cent."""
 
-HOLDS_BELOW = (
-    1.25  # errors of left-out blocks over their uncertainties up to which a model holds there
-)
+HOLDS_BELOW = 1.25
+"""Errors of left-out blocks over their uncertainties up to which a model holds there."""
 
 
 def part_lines(result: Diagnosis) -> list[tuple[str, str]]:

@@ -19,9 +19,8 @@ from matstd.twin.units import DEG
 from matstd.twin.words import listed
 
 PERIODS_NAMED = 4  # indistinguishable periods that are named, the longest ones
-UNREPORTED_EXCESS = (
-    0.1  # excess over the stated noise that is not reported: half a per cent of its size
-)
+UNREPORTED_EXCESS = 0.1
+"""Excess over the stated noise that is not reported: half a per cent of its size."""
 
 EXPLAINING_SHARE = 0.5
 """Share of the mean square beyond the stated noise that a pattern must have to explain it."""

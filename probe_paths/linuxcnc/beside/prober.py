@@ -19,9 +19,8 @@ from typing import Any, TextIO
 import hal
 
 PROBING = 5  # type of motion of a G38 move
-DIRECTION_KNOWN_AFTER = (
-    0.05  # way after which the direction of a stroke is known to eleven digits, mm
-)
+DIRECTION_KNOWN_AFTER = 0.05
+"""Way after which the direction of a stroke is known to eleven digits, mm."""
 
 NEVER = 1e9
 
