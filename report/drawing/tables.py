@@ -80,7 +80,7 @@ def _faces(standard: Standard) -> Block:
     head = ["face", "x", "y", "z", "size", "slope", "R", "tests; dominant errors"]
     title = "Freeform faces (middle, steepest slope, least concave radius R)"
     rows = [head, *map(_face_row, standard.patches)]
-    return _table(title, (10, 14, 15, 12, 23, 11, 12, 57), rows)
+    return _table(title, (10, 14, 14, 12, 23, 13, 15, 53), rows)
 
 
 def _face_row(patch: FreeformPatch) -> list[str]:
