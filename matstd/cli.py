@@ -59,10 +59,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command.
 
     Returns:
-        0 when it did its work, 2 after one line on what the user can put right; a fault of our own
-        keeps its traceback.
+        0 when it did its work, 2 after one line on what the user can put right, or after the help
+        where no command is given; a fault of our own keeps its traceback.
     """
     arguments = list(sys.argv[1:] if arguments is None else arguments)
+    if not arguments:
+        _parser(arguments).print_help()
+        return EXIT_BAD_INPUT
     args, rest = _parser(arguments).parse_known_args(arguments)
     if rest:  # the command knows which options it has
         args.parser.error(f"unrecognized arguments: {' '.join(rest)}")

@@ -29,3 +29,8 @@ def test_a_wrong_command_line_is_refused_in_one_line(line, capsys):
     said = capsys.readouterr().err
     assert said.count("\n") == 1
     assert REFUSED[line] in said
+
+
+def test_a_call_without_a_command_prints_the_help(capsys):
+    assert main([]) == 2
+    assert "design a material standard" in capsys.readouterr().out
