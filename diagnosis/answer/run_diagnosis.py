@@ -40,7 +40,7 @@ from matstd.diagnosis.choice import (
     search_with_memory,
     with_chosen_set,
 )
-from matstd.diagnosis.evidence import Progress, ResidualSpace, ScaledEffect, quiet
+from matstd.diagnosis.evidence import Progress, RawColumns, ScaledEffect, quiet
 from matstd.diagnosis.faults import description_faults
 from matstd.diagnosis.fit import Fit, Prior, prior_for
 from matstd.diagnosis.geometry import learnt_geometry
@@ -97,7 +97,8 @@ def diagnose(
     run = with_commanded(without_copies(run))
     start = model or ordinary_model(run.touches.chain)
     belief = prior_for(run, start) if prior is None else prior
-    task = DiagnosisTask(run, start, belief, is_known=prior is not None)
+    raw = RawColumns(run.touches)
+    task = DiagnosisTask(run, start, belief, is_known=prior is not None, raw=raw)
     possible = possible_changes(task)
     free = _diagnosed(changing_since(task, possible), named, candidates, progress, rng)
     shown, alone = shown_changes(task, free, possible)
@@ -130,7 +131,7 @@ def _diagnosed(
         library += plain_curves(touches)
     added = refined_named(task, named, progress)
     if len(added) > 1:
-        check_distinct(ResidualSpace.of(task.fit()), added)
+        check_distinct(task.space(task.fit()), added)
     known = {e.name for e in (*task.model.effects, *(a.effect for a in added))}
     library = [e for e in library if e.name not in known]
     single = [e for e in library if not traits(e).is_shrunk]

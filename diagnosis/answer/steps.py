@@ -94,7 +94,7 @@ def _steps(
     """The error falling: the starting model, named effects, found effects by their worth."""
     state, first = tested.state, task.fit((), gross)
     # the reported inner parameters are those that are drawn and saved
-    numbers, effects = sizes(task, (*added, *state.effects), gross, ResidualSpace.of(first))
+    numbers, effects = sizes(task, (*added, *state.effects), gross, task.space(first))
     classes = (*(None for _ in added), *tested.classes)
     out = [Step(effect=None, fit=first, p_value=1.0, reported=(), confusion=None)]
     for k, (confusion, reported) in enumerate(zip(classes, numbers, strict=True)):

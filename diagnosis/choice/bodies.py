@@ -14,7 +14,6 @@ import numpy as np
 
 from matstd.diagnosis.evidence import (
     EffectSet,
-    ResidualSpace,
     ScaledEffect,
     log_evidence,
     projected,
@@ -54,7 +53,7 @@ def bodies(
     task: DiagnosisTask, added: tuple[ScaledEffect, ...], gross: GrossErrors
 ) -> tuple[ScaledEffect, ...]:
     """For every distinguishable component error the body that explains it best, if any."""
-    complement = ResidualSpace.of(task.fit(added, gross))
+    complement = task.space(task.fit(added, gross))
     touches = complement.touches
     chosen: list[ScaledEffect] = []
     for symbol in carriers(touches):

@@ -11,7 +11,6 @@ from matstd.diagnosis.choice.prediction import Choice, ChoiceRule
 from matstd.diagnosis.evidence import (
     EffectSet,
     Progress,
-    ResidualSpace,
     ScaledEffect,
     projected,
     quiet,
@@ -46,7 +45,7 @@ def with_chosen_set(
     base = task.fit(added, gross)
     # rows count for less, so a prior that was chosen beside whole rows must be wider by as much
     effects = tuple(_wider(s, base.weight) for s in best.effects)
-    complement = ResidualSpace.of(base)
+    complement = task.space(base)
     library = Library.of(complement, candidates, progress)
     shortlist = library.shortlist(effects, EffectSet(complement, projected(complement, effects)))
     search = Search(library.pool(shortlist), None, progress)

@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from matstd.diagnosis.evidence import Progress, ScaledEffect, quiet
+from matstd.diagnosis.evidence import Progress, RawColumns, ScaledEffect, quiet
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.regression import GrossErrors, Memory, likely_memory
@@ -69,7 +69,8 @@ def search_with_memory(
     the memory that such a search of a choice of its rows leaves.
     """
     if len(task.run) > WHOLE_BELOW:
-        small = replace(task, run=chosen_rows(task.run))
+        run = chosen_rows(task.run)
+        small = replace(task, run=run, raw=RawColumns(run.touches))
         start = search_with_memory(small, added, candidates, progress)[1].effects
         task = replace(task, memory=memory_beside(task, (*added, *start)))
         return task, searched(task, added, candidates, progress, start)

@@ -9,6 +9,7 @@ from matstd.diagnosis.evidence.detection import needed_lengths
 from matstd.diagnosis.evidence.effect_signatures import (
     Grid,
     Progress,
+    RawColumns,
     ResidualSpace,
     ScaledEffect,
     Signatures,
@@ -35,6 +36,7 @@ __all__ = [
     "EffectSet",
     "Grid",
     "Progress",
+    "RawColumns",
     "ResidualSpace",
     "ScaledEffect",
     "Scores",

@@ -7,10 +7,9 @@ signature is how many standard deviations of noise the effect at its usual size 
 """
 
 from collections.abc import Callable, Hashable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import product
-from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -27,20 +26,36 @@ BLOCK = 256  # columns that are projected at a time
 MAX_GRID_POINTS = 1000  # most points of the grid of one effect's inner parameters
 KEPT_BELOW = 2000  # touches of a run up to which raw columns are kept, some 100 MB
 
-_RAW: WeakKeyDictionary[Touches, dict[tuple[Effect, ...], Array]] = WeakKeyDictionary()
-"""Raw columns of grids: every turn of a search asks for the same ones, while the model that is
-projected out of them differs by a few gross errors."""
-
 
 def quiet(share: float, doing: str) -> None:
     """Ignore progress."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RawColumns:
+    """Columns of effects at the touches of one run, those of a short run worked out once.
+
+    Every turn of a search asks for the same ones, while the model that is projected out of them
+    differs by a few gross errors. So a diagnosis owns them and passes them to all its projections.
+    """
+
+    touches: Touches  # all of the run, since some effects remember what went before
+    kept: dict[tuple[Effect, ...], Array] = field(default_factory=dict)
+
+    def of(self, grid: "Grid") -> Array:
+        """Columns of a candidate at the points of its grid, (all touches, K), base units."""
+        if len(self.touches) > KEPT_BELOW or not isinstance(grid.effect, Hashable):
+            return columns(grid.variants, self.touches)
+        if grid.variants not in self.kept:
+            self.kept[grid.variants] = columns(grid.variants, self.touches)
+        return self.kept[grid.variants]
 
 
 @dataclass(frozen=True, eq=False)
 class ResidualSpace:
     """What a fit leaves: the projection on it, and the residual, data and prior rows together."""
 
-    touches: Touches  # all of the run, since some effects remember what went before
+    raw: RawColumns  # of effects at all touches of the run
     used: Mask  # which of them the fit uses, N of them
     u: Array  # their standard uncertainty as found, (N,), mm
     Q: Array  # basis of the model, data and prior rows, (N + P, P)
@@ -55,15 +70,20 @@ class ResidualSpace:
     independent: float | None = None  # number of independent observations; None for one a touch
 
     @classmethod
-    def of(cls, fit: Fit) -> "ResidualSpace":
-        """What a fit leaves."""
+    def of(cls, fit: Fit, raw: RawColumns | None = None) -> "ResidualSpace":
+        """What a fit leaves.
+
+        Args:
+            raw: Columns at its touches that are shared with other projections; None for none.
+        """
+        assert raw is None or raw.touches is fit.run.touches
         solution = fit.solution
         Q = np.vstack([solution.Q, solution.root])
         residual = np.concatenate([solution.residual, -solution.phi])
         u = fit.u[fit.used] * fit.weight
         count = len(u) / fit.weight**2
         return cls(
-            touches=fit.run.touches,
+            raw=raw or RawColumns(fit.run.touches),
             used=fit.used,
             u=u,
             Q=Q,
@@ -75,6 +95,11 @@ class ResidualSpace:
             stated=PRIOR_DOF / (fit.noise.factor * fit.weight) ** 2,
             independent=count if fit.weight > 1.0 else None,
         )
+
+    @property
+    def touches(self) -> Touches:
+        """All touches of the run."""
+        return self.raw.touches
 
     @property
     def count(self) -> float:
@@ -105,15 +130,6 @@ class ResidualSpace:
     def columns(self, effects: Sequence[Effect]) -> Array:
         """Whitened columns of effects, scaled by their prior, (N, K)."""
         return self.whitened(columns(effects, self.touches), effects)
-
-    def kept_columns(self, grid: "Grid") -> Array:
-        """The same of a candidate at the points of its grid, worked out once for a run."""
-        if len(self.touches) > KEPT_BELOW or not isinstance(grid.effect, Hashable):
-            return self.columns(grid.variants)
-        kept = _RAW.setdefault(self.touches, {})
-        if grid.variants not in kept:
-            kept[grid.variants] = columns(grid.variants, self.touches)
-        return self.whitened(kept[grid.variants], grid.variants)
 
     def whitened(self, C: Array, effects: Sequence[Effect]) -> Array:
         """Raw columns of effects (all touches, K) whitened and scaled by their prior, (N, K)."""
@@ -271,7 +287,7 @@ def signatures(
     raw = C[: len(complement.u)]
     first = 0
     for grid in grids:
-        own = complement.kept_columns(grid)
+        own = complement.whitened(complement.raw.of(grid), grid.variants)
         raw[:, first : first + own.shape[1]] = own
         first += own.shape[1]
     size = np.linalg.norm(raw, axis=0)

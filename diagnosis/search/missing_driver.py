@@ -9,9 +9,8 @@ that remain.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
-from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -40,12 +39,29 @@ morning of a workshop, and what an air conditioner makes of it."""
 SENSOR = "unrecorded"
 
 
+@dataclass(frozen=True, eq=False)
+class Courses:
+    """The touches of a run at the courses that a temperature may take, shared by all laws."""
+
+    touches: Touches
+
+    @cached_property
+    def driven(self) -> tuple[Touches, ...]:
+        """The touches at 20 degC, and with every half wave above it."""
+        waves = [half_wave(self.touches, k) for k in range(max(COURSES) + 1)]
+        return tuple(
+            replace(self.touches, temperature={SENSOR: T_REF + wave})
+            for wave in (np.zeros(len(self.touches)), *waves)
+        )
+
+
 @dataclass(frozen=True)
 class Unrecorded:
     """A law after a temperature ``T = 20 degC + sum_k a_k cos(pi k t/t_end)`` that is not known."""
 
     law: Effect  # the same after a sensor, `SENSOR`
-    half_waves: int = min(COURSES)  # of the temperature over a run, one of `COURSES`
+    half_waves: int  # of the temperature over a run, one of `COURSES`
+    courses: Courses = field(compare=False, repr=False)  # at the touches of its run
 
     kind = "unrecorded"
 
@@ -69,27 +85,14 @@ class Unrecorded:
 
     def terms(self, touches: Touches) -> Sequence[Term]:
         """Terms of the law, once for the mean and for every half wave."""
-        base, *driven = _driven(touches)
+        own = self.courses if touches is self.courses.touches else Courses(touches)
+        base, *driven = own.driven
         still = [t.amount for t in self.law.terms(base)]
         return tuple(
             term._replace(parameter=k, amount=term.amount - zero)
             for k in range(self.half_waves + 1)
             for term, zero in zip(self.law.terms(driven[k]), still, strict=True)
         )
-
-
-_DRIVEN: WeakKeyDictionary[Touches, list[Touches]] = WeakKeyDictionary()
-
-
-def _driven(touches: Touches) -> list[Touches]:
-    """The touches at a temperature that stands, and at every half wave; made once for all laws."""
-    if touches not in _DRIVEN:
-        waves = [half_wave(touches, k) for k in range(max(COURSES) + 1)]
-        _DRIVEN[touches] = [
-            replace(touches, temperature={SENSOR: T_REF + wave})
-            for wave in (np.zeros(len(touches)), *waves)
-        ]
-    return _DRIVEN[touches]
 
 
 def half_wave(touches: Touches, k: int) -> Array:
@@ -104,7 +107,8 @@ def unrecorded(touches: Touches) -> list[Unrecorded]:
         return []
     rising = T_REF + half_wave(touches, 1)
     known = replace(touches, temperature={SENSOR: rising})
-    return [Unrecorded(law, k) for law in proposals(known, AT_ONCE) for k in COURSES]
+    courses = Courses(touches)
+    return [Unrecorded(law, k, courses) for law in proposals(known, AT_ONCE) for k in COURSES]
 
 
 def likeliest_drift(others: EffectSet) -> tuple[ScaledEffect, float] | None:

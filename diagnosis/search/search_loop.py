@@ -37,7 +37,6 @@ from matstd.diagnosis.accuracy import domains
 from matstd.diagnosis.evidence import (
     EffectSet,
     Progress,
-    ResidualSpace,
     ScaledEffect,
     Signatures,
     projected,
@@ -150,7 +149,7 @@ def refined_named(
     """Named effects with their inner parameters at the best point of their grids, refined."""
     if not named:
         return ()
-    complement = ResidualSpace.of(task.fit())
+    complement = task.space(task.fit())
     grids = scanned_grids(named, complement)
     search = Search(signatures(complement, grids, len(grids), progress))
     chosen = search.evaluate(())
@@ -237,7 +236,7 @@ def _settled(
     found: Sequence[ScaledEffect] = start
     budget = Budget()
     for remaining in reversed(range(MAX_ROUNDS)):
-        library = Library.of(ResidualSpace.of(base), [*candidates, *nameless], progress)
+        library = Library.of(task.space(base), [*candidates, *nameless], progress)
         search, chosen = best_set(library, found, budget, progress)
         found = chosen.sized
         whole = task.fit((*added, *found))

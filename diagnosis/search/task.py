@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from matstd.diagnosis.evidence import ScaledEffect
+from matstd.diagnosis.evidence import RawColumns, ResidualSpace, ScaledEffect
 from matstd.diagnosis.fit import Fit, Prior, fit_run, prior_for
 from matstd.diagnosis.regression import GrossErrors, Memory
 from matstd.twin.model import Model
@@ -25,6 +25,12 @@ class DiagnosisTask:
     memory: Memory | None = None  # of the noise; None for white noise
     # prior of the starting model by itself, where `prior` is what suits it beside effects
     alone: Prior | None = None
+    # of effects at its touches, for all projections of the diagnosis; None keeps none
+    raw: RawColumns | None = None
+
+    def space(self, fit: Fit) -> ResidualSpace:
+        """What a fit of this run leaves."""
+        return ResidualSpace.of(fit, self.raw)
 
     def fit(
         self,
