@@ -53,11 +53,14 @@ class EffectEntry(Table):
 
     `told` are its numbers as reported of the run, which rest on the touches alone where the
     estimates lean on what is usual. `run` and `share_um` stand at effects that are not the
-    machine's: the fingerprint of their run, and the rms that they made at its touches.
+    machine's: the fingerprint of their run, and the rms that they made at its touches. Of effects
+    between which the run does not distinguish each has its `share`, and estimates that are so much
+    of what they would be with it alone: together they predict the average.
     """
 
     name: str
     inner: dict[str, float] = Field(default_factory=dict)
+    share: float = Field(default=1.0, gt=0.0, le=1.0)
     estimate: dict[str, float]
     told: list[ReportedEntry] = Field(default_factory=list)
     run: str = ""

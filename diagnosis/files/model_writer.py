@@ -34,6 +34,7 @@ def model_text(
     held_out: float | None = None,
     reported: Mapping[str, Sequence[Reported]] | None = None,
     determined: Sequence[GeometryRow | Determined] = (),
+    shares: Mapping[str, float] | None = None,
 ) -> str:
     """Text of a model file; set-ups of the standard stay with their run.
 
@@ -47,6 +48,7 @@ def model_text(
             fit.
         reported: Sizes of effects as reported, by name.
         determined: Quantities that the run determines.
+        shares: Shares of effects between which the run does not distinguish, by name.
     """
     import tomli_w
 
@@ -62,6 +64,8 @@ def model_text(
         inner = _inner_values(fit, effect)
         if inner:
             entry["inner"] = inner
+        if (share := (shares or {}).get(effect.name, 1.0)) < 1.0:
+            entry["share"] = share
         values = theta[start : start + len(keys)]
         entry["estimate"] = {key: float(v) / f for (key, f), v in zip(keys, values, strict=True)}
         numbers = (reported or {}).get(effect.name, ())

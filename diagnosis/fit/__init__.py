@@ -25,7 +25,7 @@ from matstd.diagnosis.fit.identification import (
     prior_for,
 )
 from matstd.diagnosis.fit.inner import continuous_inner, shifted, spacing
-from matstd.diagnosis.fit.learnt_fit import Learnt
+from matstd.diagnosis.fit.learnt_fit import Learnt, averaged
 from matstd.diagnosis.fit.prior import Prior
 from matstd.diagnosis.fit.unit_mistakes import MistakenUnit, UnitMistake, unit_mistake
 
@@ -43,6 +43,7 @@ __all__ = [
     "Reported",
     "Role",
     "UnitMistake",
+    "averaged",
     "continuous_inner",
     "estimable",
     "explained_rms",

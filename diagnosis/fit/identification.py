@@ -63,6 +63,8 @@ class Fit(Displayed):
         widened: Factor by which the prior of the machine was widened, 1 unless it was exceeded.
         memory: Correlation of the noise, of which `X`, `y` and `solution` are already free in the
             rows used; None for white noise.
+        from_inner: Root of the covariance that uncertain inner parameters add, where the fit was
+            made again; None where it follows from the run.
     """
 
     run: Run
@@ -78,6 +80,7 @@ class Fit(Displayed):
     noise: Noise
     widened: float = 1.0
     memory: Memory | None = None
+    from_inner: Array | None = None
 
     @cached_property
     def effects(self) -> tuple[Effect, ...]:

@@ -7,7 +7,8 @@ with ``K = -(S^T S)^-1 S^T M`` (their prior among the rows), so the joint covari
 ``[[L, 0], [K L, R_s^-1]]``, and with it come leverages, left-out errors and degrees of freedom.
 """
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.linalg import block_diag, rq, solve_triangular
@@ -60,6 +61,46 @@ class Learnt:
         return _again(run, model, self)
 
 
+def averaged(fits: Sequence[tuple[float, Fit]]) -> Fit:
+    """One fit that predicts what models which a run does not distinguish predict on average.
+
+    It has the effects of all. With m_k and C_k the estimates of model k and their covariance, zero
+    for what it lacks, and s_k its share, the mixture has
+
+        m = sum s_k m_k,    C = sum s_k (C_k + (m_k - m) (m_k - m)^T),
+
+    so every prediction, linear in the parameters, is the average of theirs, and its variance has
+    their disagreement besides their own. Which model it is counts as an inner parameter does: no
+    touch has less noise for it. Noise and gross errors are those of the first.
+
+    Args:
+        fits: Shares, 1 together, and fits to one run. What several of them have is one object.
+
+    Reference:
+        Hoeting, Madigan, Raftery, Volinsky, Statistical Science 14 (1999): model averaging.
+    """
+    first = fits[0][1]
+    effects = {id(e): e for _, fit in fits for e in fit.model.effects}
+    model = Model(first.model.chain, tuple(effects.values()))
+    owner = np.array([id(e) for e, _ in model.parameters])
+    mean, held, inner = np.zeros(len(owner)), np.zeros((len(owner),) * 2), list[Array]()
+    estimates = []
+    for share, fit in fits:
+        own = np.concatenate([np.flatnonzero(owner == id(e)) for e in fit.model.effects])
+        among, learnt = np.eye(len(owner))[:, own], Learnt.of(fit)
+        estimates.append(among @ learnt.estimates.mean)
+        mean += share * estimates[-1]
+        root = among @ learnt.estimates.root
+        held += share * root @ root.T
+        inner.append(share**0.5 * among @ learnt.from_inner)
+    shares = np.array([share for share, _ in fits])
+    if len(fits) > 1:
+        inner.append((np.transpose(estimates) - mean[:, None]) * shares**0.5)
+    of_all = Prior.of_estimates(mean, held)
+    learnt = replace(Learnt.of(first), estimates=of_all, from_inner=np.hstack(inner))
+    return learnt.again(first.run, model)
+
+
 def _again(run: Run, model: Model, learnt: Learnt) -> Fit:
     """The fit of a model to a run as it was, from what was kept of it."""
     setups = setup_errors(run.touches)
@@ -89,6 +130,7 @@ def _again(run: Run, model: Model, learnt: Learnt) -> Fit:
         gross=_set_aside(learnt.gross, train),
         noise=noise_of(run, solution, left, used, learnt.factor),
         memory=learnt.memory,
+        from_inner=learnt.from_inner,
     )
 
 
@@ -114,8 +156,11 @@ def _set_aside(gross: Mask, train: Mask) -> GrossErrors:
 def _from_inner(fit: Fit) -> Array:
     """Root (P, T) of the covariance that T uncertain inner parameters add to P of the machine.
 
-    From a fit with their tangents, ``C_pd C_dd^-1/2`` with d the displacements.
+    From a fit with their tangents, ``C_pd C_dd^-1/2`` with d the displacements; of a fit that was
+    made again it is known.
     """
+    if fit.from_inner is not None:
+        return fit.from_inner
     count = len(fit.model.parameters)
     prior = Prior(fit.prior.mean[:count], fit.prior.root[:count, :count])
     theta = fit.theta[:count]

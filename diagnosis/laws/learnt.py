@@ -2,16 +2,18 @@
 
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import product
+from math import prod
 
 import numpy as np
 
-from matstd.diagnosis.fit import Fit
+from matstd.diagnosis.fit import Fit, averaged
 from matstd.diagnosis.laws.acceptance import HeldOut, Refusal
 from matstd.diagnosis.laws.beginning import Beginning
 from matstd.diagnosis.laws.library import LibraryEffect
 from matstd.diagnosis.laws.policy import LawPolicy
 from matstd.twin.frames import Array
-from matstd.twin.laws import Carrier, Law
+from matstd.twin.laws import Carrier, Law, law_of
 from matstd.twin.library import owner_of
 from matstd.twin.model import Effect, columns
 from matstd.twin.record import Run
@@ -61,8 +63,11 @@ class LearntLaw:
         """Laws that cannot be distinguished, with their shares of a prediction.
 
         An effect of the library that explains as well is one of them: it has a cause, and with its
-        share a second run was left with 0.62 um instead of 0.69.
+        share a second run was left with 0.62 um instead of 0.69. A law that belongs to its run
+        stands alone, since it predicts no other.
         """
+        if not self.travels:
+            return [(self.law, 1.0)]
         near, seen = [], {self.law.explanation}
         for rival in self.rivals:
             if rival.log_odds < policy.class_odds and rival.law.explanation not in seen:
@@ -107,19 +112,28 @@ class Learning:
         return ["learnt-law" if count == 1 else f"learnt-law-{i}" for i in range(1, count + 1)]
 
     @cached_property
-    def members(self) -> dict[str, list[tuple[Effect, Array, float]]]:
-        """Laws over which predictions average, with amplitudes and shares, by the law chosen.
+    def _sets(self) -> list[tuple[float, list[Effect]]]:
+        """Sets of laws that the run does not distinguish, those chosen first, with their shares."""
+        taken = {one.law.name for one in self.laws}
+        classes = []
+        for one in self.laws:
+            every = one.members(self.policy)
+            kept = [(e, share) for e, share in every if e is one.law or e.name not in taken]
+            taken |= {effect.name for effect, _ in kept}
+            classes.append(kept)
+        sets = [(prod(s for _, s in one), [e for e, _ in one]) for one in product(*classes)]
+        least = np.exp(-self.policy.class_odds) * max(share for share, _ in sets)
+        sets = [one for i, one in enumerate(sets) if not i or one[0] > least]
+        whole = sum(share for share, _ in sets)
+        return [(share / whole, effects) for share, effects in sets]
 
-        Amplitudes of a member are those that it has in the place of the law that was chosen.
-        """
-        out: dict[str, list[tuple[Effect, Array, float]]] = {}
-        chosen = [one.law for one in self.laws]
-        for i, one in enumerate(self.laws):
-            own = out.setdefault(one.law.name, [])
-            for law, share in one.members(self.policy):
-                effects = [*chosen[:i], law, *chosen[i + 1 :]]
-                fit = self.after if law is one.law else self.beginning.fitted(effects)
-                own.append((law, fit.theta[fit.of_effect(law.name)], share))
+    @property
+    def shares(self) -> dict[str, float]:
+        """Share of predictions of every law, and of every effect in the place of one, by name."""
+        out: dict[str, float] = {}
+        for share, effects in self._sets:
+            for effect in effects:
+                out[effect.name] = out.get(effect.name, 0.0) + share
         return out
 
     def predicted(self, run: Run) -> Array:
@@ -134,28 +148,36 @@ class Learning:
         return self._added(run, True)
 
     def _added(self, run: Run, is_clock_kept: bool) -> Array:
-        out = np.zeros(len(run))
-        for one in self.laws:
-            for law, theta, share in self.members[one.law.name]:
-                if is_clock_kept or (one.travels and owner_of(law) == "machine"):
-                    out += share * (columns([law], run.touches) @ theta)
+        fit, out = self.saved, np.zeros(len(run))
+        for effect in fit.model.effects[len(self.before.model.effects) :]:
+            if is_clock_kept or owner_of(effect) == "machine":
+                out += columns([effect], run.touches) @ fit.theta[fit.of_effect(effect.name)]
         return out
 
     @cached_property
     def saved(self) -> Fit:
-        """With what is not known of every formula beyond the values that its variables had.
+        """What predicts: the average over laws that the run does not distinguish.
 
-        No touch shows that: the estimates are those of `after`, with wider predictions elsewhere.
+        Of every formula it has what is not known beyond the values that its variables had, which no
+        touch shows: zero, with wider predictions there.
         """
+        if not self.laws:
+            return self.after
         used = self.after.run.touches[self.after.used]
         beyond: dict[str, Effect] = {}
-        for one in (one.law for one in self.laws if not one.law.is_curve_alone):
-            theta = self.after.theta[self.after.of_effect(one.name)]
-            beyond |= {law.name: law for law in one.beyond(theta, used)}
-        laws = [one.law for one in self.laws]
-        if not beyond:
-            return self.after
-        return self.beginning.fitted([*laws, *beyond.values()], gross=self.after.gross)
+        fits = []
+        for share, effects in self._sets:
+            fit = self.beginning.fitted(effects, gross=self.after.gross)
+            margins = [
+                margin
+                for law in filter(None, map(law_of, effects))
+                if not law.is_curve_alone
+                for margin in law.beyond(fit.theta[fit.of_effect(law.name)], used)
+            ]
+            own = [beyond.setdefault(m.name, m) for m in margins]
+            whole = [*effects, *own]
+            fits.append((share, self.beginning.fitted(whole, gross=self.after.gross)))
+        return averaged(fits)
 
     @property
     def u(self) -> Array:

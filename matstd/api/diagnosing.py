@@ -99,13 +99,14 @@ class Diagnosis(Saveable, answer.Diagnosis):
         made_with = f"material-standard {versions()['material-standard']}"
         is_all = self.learnt is self.predicting and self.choice is not None
         promised = self.choice.best.error if is_all and self.choice else None
+        shares: dict[str, float] = {}
         if self.laws is not None and self.learnt is self.laws.saved and self.laws.laws:
-            promised = self.laws.held_out[0].after
+            promised, shares = self.laws.held_out[0].after, self.laws.shares
         reported = {s.effect.name: s.reported for s in self.steps if s.effect is not None}
         # with a law in the model, too, as console and page report them: one error has one value
         known = [row for row in self.geometry.rows if row.is_determined]
         return model_text(
-            self.learnt, self.title, self.before, made_with, promised, reported, known
+            self.learnt, self.title, self.before, made_with, promised, reported, known, shares
         )
 
     @property

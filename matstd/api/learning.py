@@ -53,7 +53,9 @@ class LearntLaws(Saveable, laws.Learning):
         made_with = f"material-standard {versions()['material-standard']}"
         promised = self.held_out[0].after if self.held_out else None
         known = [row for row in self.geometry.rows if row.is_determined]
-        return model_text(self.saved, self.title, None, made_with, promised, determined=known)
+        return model_text(
+            self.saved, self.title, None, made_with, promised, determined=known, shares=self.shares
+        )
 
     @cached_property
     def geometry(self) -> LearntGeometry:

@@ -32,6 +32,7 @@ from matstd.diagnosis.laws import (
     Learning,
     LearntLaw,
     Refusal,
+    Rival,
     amplitudes,
     learn_laws,
     learn_remainder,
@@ -232,7 +233,10 @@ def test_rivals_of_other_kinds_are_weighed_by_the_same_evidence(stylus) -> None:
     )
     assert weighed(one, False, POLICY) is None
     assert weighed(near, False, POLICY) is None  # both predict, by their odds
-    assert [share for _, share in near.members(POLICY)] == pytest.approx([0.119, 0.881], abs=1e-3)
+    assert near.members(POLICY) == [(one.law, 1.0)]  # it belongs to its run, and predicts no other
+    lasting = replace(near, law=parse_effect("law(bias,step Z)", run.touches.chain))
+    shares = [share for _, share in lasting.members(POLICY)]
+    assert shares == pytest.approx([0.119, 0.881], abs=1e-3)
     assert weighed(better, False, POLICY) is Refusal.LIBRARY
     assert weighed(better, True, POLICY) is None  # a diagnosis has looked for it already
     assert weighed(replace(one, memory=one.score + 1.0), True, POLICY) is Refusal.MEMORY
@@ -394,6 +398,60 @@ def test_a_saved_law_is_less_sure_beyond_the_values_it_was_learnt_from(stylus) -
     u = [compare(run, model_of(fit)).u for fit in (found.saved, after)]
     wider = u[0] / u[1]
     assert np.median(wider[q > edge + 0.2 * (edge - q.min())]) > 1.2 * np.median(wider[q < edge])
+
+
+def test_a_model_predicts_the_average_over_laws_that_its_run_does_not_distinguish(stylus) -> None:
+    """By hand: means of either law weighed 3 : 1, variances with the squares of their distance."""
+    _, (run, second, _), _ = stylus
+    chain = run.touches.chain
+    x, y = (float(np.median(run.touches.reading(axis))) for axis in "XY")
+    law, other = (
+        parse_effect(f"law(EZY,bump {axis})", chain).tuned(place, 60.0)
+        for axis, place in (("Y", y), ("X", x))
+    )
+    hidden = 4.0 * UM * columns([law], run.touches)[:, 0]
+    start = Beginning.of_run(replace(run, deviation=run.deviation + hidden))
+    after = start.fitted([law])
+    one = LearntLaw(law, (), 0.0, 0.0, 0.0, (Rival(other, np.log(3.0)),))
+    found = Learning(start, after, after, (one,), None, None, (), POLICY)
+    text = model_text(found.saved, "run", shares=found.shares)
+    entries = {e["name"]: e for e in tomllib.loads(text)["effect"]}
+    assert [entries[e.name]["share"] for e in (law, other)] == pytest.approx([0.75, 0.25])
+    assert all("share" not in e for name, e in entries.items() if not name.startswith("law("))
+    saved = parsed_model(text, "model.toml", runs=[second])
+    # what the geometry takes up is uncertain by millimetres, and alike in both
+    Q = np.linalg.qr(start.fit.model.columns(second.touches))[0]
+
+    def bare(columns_):
+        return columns_ - Q @ (Q.T @ columns_)
+
+    C = bare(saved.model.columns(second.touches))
+    mean, u2 = C @ saved.estimates.mean, ((C @ saved.estimates.root) ** 2).sum(axis=1)
+    means, variances = [], []
+    for each in (law, other):
+        alone, fit = (start.fitted([each], free, gross=after.gross) for free in (False, True))
+        # beyond the values that were seen zero is as unsure as the law is large
+        margins = each.beyond(alone.theta[alone.of_effect(each.name)], run.touches[after.used])
+        A, B = bare(fit.model.columns(second.touches)), bare(columns(margins, second.touches))
+        P = A.shape[1]
+        means.append(A @ alone.theta[:P])
+        known = np.einsum("np,pq,nq->n", A, fit.covariance[:P, :P], A)
+        variances.append(known + (B**2).sum(axis=1))
+    expected = 0.75 * means[0] + 0.25 * means[1]
+    apart = 0.75 * (means[0] - expected) ** 2 + 0.25 * (means[1] - expected) ** 2
+    np.testing.assert_allclose(mean, expected, atol=1e-6 * UM)
+    wanted = 0.75 * variances[0] + 0.25 * variances[1] + apart
+    np.testing.assert_allclose(u2, wanted, rtol=0.02)
+    assert (apart > variances[0]).sum() > 20
+    # what the laws add to another run is the average of what either adds
+    added = [
+        share * columns([each], second.touches) @ fit.theta[fit.of_effect(each.name)]
+        for share, each in ((0.75, law), (0.25, other))
+        for fit in [start.fitted([each], gross=after.gross)]
+    ]
+    np.testing.assert_allclose(found.predicted(second), sum(added), atol=1e-6 * UM)
+    again = compare(found.before.run, parsed_model(text, "model.toml", runs=[found.before.run]))
+    np.testing.assert_allclose(again.fit.residual, found.saved.residual, atol=1e-3 * UM)
 
 
 def test_a_curve_is_saved_and_is_uncertain_where_it_has_not_been(stylus, tmp_path) -> None:
