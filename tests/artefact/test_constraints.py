@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from sites import Site, patch_of_site, standard_from_sites
+from demo import leaning
 
 from matstd.artefact.body import (
     OVERHANG,
@@ -18,9 +18,8 @@ from matstd.artefact.body import (
 )
 from matstd.artefact.body.limits import overhang
 from matstd.artefact.body.spline import clamped_knots
-from matstd.artefact.layout import Blank, Fittings
+from matstd.artefact.layout import Fittings
 from matstd.twin.errors import NotBuildable, ShapeMismatch
-from matstd.twin.units import DEG
 
 FLAT = np.zeros((8, 8))
 LIMITS = Limits()
@@ -72,11 +71,10 @@ def test_column_that_leans_out_through_the_side_of_the_base():
     # and leave through its side 5 mm lower, 10 mm above mid-base, where the column is cut off
     base = Base()
     radius = base.half_size[0] - 5.0 - 18.0 * np.sqrt(2.0) - (90.0 - base.thickness)
-    site = Site(0.0, radius, 90.0, 45 * DEG, (18.0, 20.0), FLAT, lean=180 * DEG)
-    leaning = patch_of_site("FF1", site, base)
-    assert overhang(leaning, base) == pytest.approx(0.5 * base.thickness - 5.0, abs=1e-9)
-    further_in = replace(site, radius=radius - 10.0)
-    assert overhang(patch_of_site("FF1", further_in, base), base) == pytest.approx(0.0, abs=1e-9)
+    for inwards, expected in ((0.0, 0.5 * base.thickness - 5.0), (10.0, 0.0)):
+        at = leaning(0, radius - inwards, 90, -45)
+        patch = graph_patch("FF1", at, (18.0, 20.0), FLAT, depth=140.0)
+        assert overhang(patch, base) == pytest.approx(expected, abs=1e-9)
 
 
 def test_hole_under_a_patch(standard):
@@ -90,10 +88,10 @@ def test_names_are_used_once(standard):
         changed(standard, 0, name="FF3")
 
 
-def test_volume_estimate_against_closed_form():
+def test_volume_estimate_against_closed_form(standard):
     # base with rounded corners, one upright column with a flat lid, four holes, no core
-    site = Site(0.0, 0.0, 100.0, 0.0, (20.0, 25.0), FLAT)
-    whole = standard_from_sites("one", [site])
+    column = graph_patch("FF1", leaning(0, 0, 100, 0), (20.0, 25.0), FLAT, depth=90.0)
+    whole = replace(standard, core=None, patches=(column,))
     fit = Fittings()
     plate = (280.0**2 - (4 - np.pi) * 25.0**2) * 30.0
     holes = 4 * np.pi * (fit.hole_radius**2 * 19.0 + fit.bore_radius**2 * 11.0)
@@ -104,7 +102,6 @@ def test_volume_estimate_against_closed_form():
         for s in whole.spheres
     )
     exact = plate + 40.0 * 50.0 * 70.0 - holes + stems
-    assert whole.core is None
     assert whole.volume(2.0) == pytest.approx(exact, rel=2e-3)
     assert whole.volume() == pytest.approx(exact, rel=1e-2)
     assert whole.mass() == pytest.approx(whole.volume() * 7.8e-6, rel=1e-12)
@@ -117,30 +114,3 @@ def _stem_in_ball(sphere):
     cone = sphere.foot_radius + share * (sphere.stem_radius - sphere.foot_radius)
     ball2 = np.maximum(sphere.radius**2 - (z - sphere.centre[2]) ** 2, 0.0)
     return float(np.trapezoid(np.pi * np.minimum(cone**2, ball2), z))
-
-
-def test_spheres_are_spread_and_free(standard):
-    centres = np.array([s.centre for s in standard.spheres])
-    apart = [np.linalg.norm(centres[i] - centres[j]) for i in range(3) for j in range(i)]
-    assert min(apart) > 180.0
-    assert len({round(c[2]) for c in centres}) == 3
-
-
-def test_core_takes_in_the_columns_that_end_above_the_base(standard):
-    core = standard.bodies["CORE"]
-    for patch in standard.patches:
-        origin, end = patch.T_artefact_patch[:3, 3], None
-        end = origin - patch.depth * patch.direction
-        if end[2] > standard.base.thickness:
-            assert core.distance(end[None])[0] < -2.0
-
-
-def test_refusals_of_the_builder():
-    with pytest.raises(NotBuildable, match="no site for a patch"):
-        standard_from_sites("none", [])
-    level = Site(0.0, 100.0, 80.0, 90 * DEG, (15.0, 15.0), FLAT, lean=90 * DEG)
-    with pytest.raises(NotBuildable, match="column meets neither the base nor the axis"):
-        standard_from_sites("aside", [level])
-    wall = [Site(k * 20 * DEG, 128.0, 70.0, 0.0, (20.0, 20.0), FLAT) for k in range(18)]
-    with pytest.raises(NotBuildable, match="no free place on the rim for SPH1"):
-        standard_from_sites("full", wall, Blank(base=Base((150.0, 150.0), 150.0, 30.0)))

@@ -1,12 +1,11 @@
 """Shapes, sites and touchable points that the placement chooses from."""
 
 from dataclasses import replace
-from itertools import combinations, product
+from itertools import combinations
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from sites import spread
 
 from matstd.artefact.body import (
     Limits,
@@ -293,23 +292,6 @@ def test_shares_name_what_stands_out():
 def test_a_machine_with_amplitudes_all_zero_is_refused_in_one_line():
     with pytest.raises(NotBuildable, match="amplitudes are all zero"):
         error_shares(np.zeros((2, 2)), ["FF1", "FF2"], np.array(["EXX", "EYY"]))
-
-
-def test_spread_against_all_choices():
-    rng = np.random.default_rng(5)
-    options = [rng.uniform(-100.0, 100.0, (9, 3)) for _ in range(3)]
-
-    def gap(places):
-        return min(np.linalg.norm(a - b) for a, b in combinations(places, 2))
-
-    farthest = max(gap(places) for places in product(*options))
-    assert gap(spread(options)) == pytest.approx(farthest, rel=1e-12)
-    # too many to compare all: no single place can be exchanged for a better one
-    many = [rng.uniform(-100.0, 100.0, (90, 3)) for _ in range(4)]
-    found = spread(many)
-    for k, places in enumerate(many):
-        for place in places[::9]:
-            assert gap([*found[:k], place, *found[k + 1 :]]) <= gap(found) + NM
 
 
 def test_a_pose_from_which_a_head_reaches_nothing_takes_no_part_in_the_scatter():
