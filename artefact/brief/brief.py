@@ -117,8 +117,7 @@ class Brief(Displayed):
     ball: DatumBall | None = None  # datum ball that monitors the probe; None where there is none
     # base, fittings, material and limits of the standard
     blank: Blank = field(default_factory=Blank)
-    # allowed reach of the base beyond the edge of the table, mm; None for the default
-    overhang: float | None = None
+    overhang: float = 0.0  # allowed reach of the base beyond the edge of the table, mm
     riser: float = 0.0  # height of a riser or pallet under the seat, mm
     # least natural frequency of the standard on rigid screws, Hz; 0 for any
     first_mode: float = 0.0

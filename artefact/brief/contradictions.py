@@ -147,9 +147,6 @@ def body_faults(
         )
     if min(sides) < LEAST_SIDE:
         yield BadFile(path, "blank.base_mm", list(sides), f"sides of {LEAST_SIDE:g} mm or more")
-    elif max(sides) > width >= LEAST_SIDE:
-        expected = f"sides no larger than the table, {width:g} mm ({key})"
-        yield BadFile(path, "blank.base_mm", list(sides), expected)
     if ball_mm > limits.min_concave_radius_mm:
         yield BadFile(
             path,

@@ -8,6 +8,7 @@ from matstd.artefact.body import Base, Limits, Material
 from matstd.artefact.brief.brief import Goal, PlacementOptions
 from matstd.artefact.hidden import Scan
 from matstd.artefact.layout import Blank, Fittings
+from matstd.artefact.reach import TABLE_RADIUS
 from matstd.artefact.worth import Calibration, CriterionOptions, TouchOptions
 from matstd.twin.files import Pair, Table
 from matstd.twin.units import DEG, UM
@@ -161,15 +162,15 @@ class LimitsTable(Table):
     """gap between the ball at any touch and everything else"""
     max_mass_kg: float = Field(default=60.0, gt=0.0)
     """largest mass of the standard"""
-    table_radius_mm: float = Field(default=160.0, gt=0.0)
-    """radius of the table's face; not together with `[workshop.table]`"""
+    table_radius_mm: float = Field(default=TABLE_RADIUS, gt=0.0)
+    """radius of the table's face; not together with `[workshop.table]`. The default base stands on
+    the default table"""
     slot_pitch_mm: float = Field(default=0.0, ge=0.0, examples=[63.0])
     """distance between the slots of the table, which run along its x, one through the middle, 20
     or more; 0 if screws may be anywhere"""
-    overhang_mm: float | None = Field(default=None, ge=0.0, examples=[40.0])
-    """largest overhang of the base beyond the edge of the table. Default: 40, or 5 more than the
-    overhang at the middle of the table if that is larger. Screws and their pads are on the table
-    in every set-up, whatever overhangs"""
+    overhang_mm: float = Field(default=0.0, ge=0.0, examples=[40.0])
+    """largest overhang of the base, corners included, beyond the edge of the table. Screws and
+    their pads are on the table in every set-up, whatever overhangs"""
     riser_mm: float = Field(default=0.0, ge=0.0, examples=[80.0])
     """largest height of the seat above the table's face, on a riser or pallet. A body of
     `[[workshop.bodies]]` whose upper face is at the seat carries it without this key"""

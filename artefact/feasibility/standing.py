@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from matstd.artefact.body import Standard
-from matstd.artefact.brief import Brief
+from matstd.artefact.brief import LEAST_SIDE, Brief, base_of
 from matstd.artefact.feasibility.turning import between, meetings, seen_from_face
 from matstd.artefact.reach import Body, Solid, hangs, table_face
 from matstd.artefact.seat import (
@@ -38,10 +38,6 @@ _HANGING_COSINE = 0.5
 """Cosine between weight and the way out of the seat from which on a standard hangs."""
 _BALL_BESIDE = 100.0  # a bracket on the table holds a ball so far beside its face, mm
 
-_OVERHANG, _MORE = 40.0, 5.0
-"""Default overhang of a base over the edge of the table, mm, and the margin over the overhang in
-the middle of the table where that is larger: the example has 33.9 mm at its corners."""
-
 _SHIFTS = (1.0, 2.0, 5.0, 10.0, 20.0, 30.0, 50.0, 75.0, 100.0, 150.0, 200.0, 300.0, 400.0)
 """Displacements of a clamp that are tried, mm."""
 
@@ -52,6 +48,7 @@ _TURNS = ((0.0, 0.0, 0.0), (-90.0, 0.0, 0.0), (90.0, 0.0, 0.0), (0.0, 90.0, 0.0)
 """Orientations of a standard that are tried, degrees."""
 
 _BISECTIONS = 7  # bisections of the distance to the middle of the table: 7 give 1 %
+_SIDE_STEP = 10.0  # between sides of smaller bases that are tried, mm
 
 
 @dataclass(frozen=True, eq=False)
@@ -156,24 +153,31 @@ def _setup_faults(brief: Brief, setup: Setup) -> Iterator[Fault]:
             f"a seat on the table's face: it floats {above:.1f} mm above it, and neither "
             "limits.riser_mm nor a body under it carries it",
         )
-    beyond, allowed = over_edge(table, base, T), _overhang(brief)
-    if beyond > allowed:
-        apart = off_table(table, base, T)
-        words = f"{beyond:.1f} mm beyond the edge, limits.overhang_mm is {allowed:.1f}"
-        if apart > 0.0:
-            words = f"it stands {apart:.1f} mm beside it, its far corner {words}"
-        else:
-            words = f"it reaches {words}"
-        yield Fault(key, place, f"a base on the table ([workshop.table]): {words}")
+    if fault := _overhanging(brief, setup, key):
+        yield fault
 
 
-def _overhang(brief: Brief) -> float:
-    """Allowed overhang of a base over the edge of the table, mm."""
-    stated = brief.overhang
-    if stated is not None:
-        return stated
-    in_the_middle = over_edge(brief.table, brief.blank.base, np.eye(4))
-    return max(_OVERHANG, in_the_middle + _MORE)
+def _overhanging(brief: Brief, setup: Setup, key: str) -> Fault | None:
+    """A base that reaches over the edge of the table by more than is stated; None for none.
+
+    It is the fault of its size where it does so in the middle of the table too.
+    """
+    T, base, table, allowed = setup.T_table_artefact, brief.blank.base, brief.table, brief.overhang
+    # rounded: corners of a base may lie on the edge
+    beyond, in_the_middle = (round(over_edge(table, base, at), 6) for at in (T, pose(T[:3, :3])))
+    if beyond <= allowed:
+        return None
+    words = f"{beyond:.1f} mm beyond the edge, limits.overhang_mm is {allowed:.1f}"
+    if (apart := off_table(table, base, T)) > 0.0:
+        words = f"it stands {apart:.1f} mm beside it, its far corner {words}"
+    elif in_the_middle > allowed:
+        words = f"a corner of it reaches {words}"
+    else:
+        words = f"it reaches {words}"
+    words = f"a base on the table ([workshop.table]): {words}"
+    if apart == 0.0 and in_the_middle > allowed:
+        return Fault("blank.base_mm", [2.0 * side for side in base.half_size], words)
+    return Fault(key, T[:3, 3].round(6).tolist(), words)
 
 
 def _is_carried(brief: Brief, setup: Setup) -> bool:
@@ -305,6 +309,10 @@ def _common(body: Body, T_face_still: Array, mesh: Mesh) -> Array:
 def _changes(brief: Brief, fault: Fault) -> Iterator[tuple[str, Brief]]:
     """Other places of a body, the nearest first, each with its words."""
     _, name, *_ = fault.key.split(".")
+    if fault.key == "blank.base_mm":
+        yield from _smaller_bases(brief)
+        yield from _more_overhang(brief, brief.setups)
+        return
     if fault.key.startswith("setup."):
         yield from _other_seats(brief, name)
         return
@@ -368,9 +376,26 @@ def _other_seats(brief: Brief, name: str) -> Iterator[tuple[str, Brief]]:
             words = f"setup.{name}.origin_mm = {_list(best.T_table_artefact[:3, 3])}"
             yield words, _with_setup(brief, k, best)
     if not hangs(brief.chain, T):
-        beyond = float(np.ceil(over_edge(brief.table, brief.blank.base, T)))
-        if off_table(brief.table, brief.blank.base, T) == 0.0 < beyond:
-            yield f"limits.overhang_mm = {beyond:g}", replace(brief, overhang=beyond)
+        yield from _more_overhang(brief, setups[k : k + 1])
+
+
+def _smaller_bases(brief: Brief) -> Iterator[tuple[str, Brief]]:
+    """Bases of the same proportions, the largest first."""
+    sides = 2.0 * np.array(brief.blank.base.half_size)
+    for longest in np.arange(sides.max() - _SIDE_STEP, LEAST_SIDE - 1.0, -_SIDE_STEP):
+        a, b = map(float, np.floor(longest * sides / sides.max() / _SIDE_STEP) * _SIDE_STEP)
+        if min(a, b) >= LEAST_SIDE:
+            blank = replace(brief.blank, base=base_of((a, b)))
+            yield f"blank.base_mm = {_list(np.array([a, b]))}", replace(brief, blank=blank)
+
+
+def _more_overhang(brief: Brief, setups: Sequence[Setup]) -> Iterator[tuple[str, Brief]]:
+    """The overhang that set-ups need which stand on the table in part."""
+    table, base = brief.table, brief.blank.base
+    places = [setup.T_table_artefact for setup in setups]
+    beyond = float(np.ceil(max(over_edge(table, base, T) for T in places)))
+    if all(off_table(table, base, T) == 0.0 for T in places) and beyond > 0.0:
+        yield f"limits.overhang_mm = {beyond:g}", replace(brief, overhang=beyond)
 
 
 def _with_setup(brief: Brief, k: int, setup: Setup) -> Brief:

@@ -20,11 +20,19 @@ from matstd.artefact.reach.within_reach import (
     reach_of,
     spread_poses,
 )
-from matstd.artefact.reach.workshop import TABLE, Solid, Workshop, round_table, still_frames
+from matstd.artefact.reach.workshop import (
+    TABLE,
+    TABLE_RADIUS,
+    Solid,
+    Workshop,
+    round_table,
+    still_frames,
+)
 
 __all__ = [
     "ANGLE",
     "TABLE",
+    "TABLE_RADIUS",
     "Body",
     "Clamping",
     "DatumBall",

@@ -12,8 +12,10 @@ from pathlib import Path
 
 import numpy as np
 
-from matstd.artefact.brief import Brief, project_text, read_project
+from matstd.artefact.brief import Brief, base_of, project_text, read_project
 from matstd.artefact.feasibility import Feasibility, check_seat, feasibility, stands
+from matstd.artefact.reach import TABLE, Solid
+from matstd.artefact.seat import base_corners, over_edge
 from matstd.twin.compute import Progress, silent
 from matstd.twin.errors import BadFile, DesignError, NotBuildable, NotReachable
 from matstd.twin.files import read_machine
@@ -26,7 +28,7 @@ USUAL, LARGEST, LEAST = 320.0, 400.0, 160.0
 """Sides of a base, mm: the largest that is proposed unasked (24 kg), the largest that the gain is
 stated of, and the smallest there is."""
 
-SIZE_STEP = 40.0  # between two bases that are tried, mm
+SIZE_STEP = 20.0  # between two bases that are tried, mm
 
 HEIGHT, LEAST_HEIGHT = 220.0, 120.0
 """Height of a standard, mm, of a base of 280 and more, and the smallest there is."""
@@ -103,11 +105,13 @@ def propose(
     """
     chain = read_machine(machine)
     size = table or (_assumed_table(chain),)
-    if min(size) < LEAST:
+    if not _bases(size, USUAL):
+        corners = np.abs(base_corners(base_of((LEAST, LEAST)), np.eye(4))[:, :2])
+        needed = f", which needs a round table of {2.0 * np.hypot(*corners.T).max():.0f} mm"
         raise DesignError(
             f"{machine}: a table of {min(size):g} mm: the smallest standard is "
-            f"{LEAST:g} x {LEAST:g} x {LEAST_HEIGHT:g} mm; this machine is too small for the tool"
-            f"{_in_centimetres(chain, size)}"
+            f"{LEAST:g} x {LEAST:g} x {LEAST_HEIGHT:g} mm{needed if len(size) == 1 else ''}; this "
+            f"machine is too small for the tool{_in_centimetres(chain, size)}"
         )
     # from the usual size down; the first refusal is reported, since it binds what is wanted most
     first: DesignError | None = None
@@ -162,10 +166,11 @@ def _assumed_table(chain: Chain) -> float:
     return float(np.floor(SHARE_OF_TRAVEL * min(widths, default=0.0) / 10.0) * 10.0)
 
 
-def _bases(table: tuple[float, ...], most: float) -> Iterator[float]:
-    """Sides of bases that stand on a table, the largest first, mm."""
-    largest = min(most, np.floor(min(table) / SIZE_STEP) * SIZE_STEP)
-    yield from np.arange(largest, LEAST - 1.0, -SIZE_STEP).tolist()
+def _bases(table: tuple[float, ...], most: float) -> list[float]:
+    """Sides of bases that stand on a table with their corners, the largest first, mm."""
+    face = Solid(TABLE, (0.5 * table[0], 0.5 * table[-1]), len(table) == 1, low=-1.0)
+    sides = np.arange(most, LEAST - 1.0, -SIZE_STEP).tolist()
+    return [side for side in sides if over_edge(face, base_of((side, side)), np.eye(4)) <= 0.0]
 
 
 def _checked(tables: Mapping[str, Mapping[str, object]], machine: Path) -> Brief:
@@ -233,7 +238,7 @@ def _tables(
     machine: Path,
 ) -> dict[str, dict[str, object]]:
     """Keys of a project by table."""
-    height = max(LEAST_HEIGHT, min(HEIGHT, np.floor(HEIGHT_OVER_BASE * base / 10.0) * 10.0))
+    height = max(LEAST_HEIGHT, min(HEIGHT, HEIGHT_OVER_BASE * base // 10.0 * 10.0))
     sides = [float(side) for side in table]
     outline: dict[str, object] = {"diameter_mm": sides[0]}
     if len(table) > 1:

@@ -311,9 +311,9 @@ def test_a_design_is_not_overwritten(made: Path, capsys: pytest.CaptureFixture[s
         ("poses = 10 ", "poses = 4 ", "standard.poses"),
         ("touches = 120", "touches = 50", "expected a whole number from 100 to 2000"),
         ("poses = 10 ", "poses = 61 ", "found 61 with touches = 120"),
-        ("base_mm = [280.0, 280.0]", "base_mm = [360.0, 280.0]", "no larger than the table, 320"),
+        ("base_mm = [280.0, 280.0]", "base_mm = [360.0, 280.0]", "a corner of it reaches"),
         ("base_mm = [280.0, 280.0]", "base_mm = [90.0, 280.0]", "160 mm or more"),
-        ("table_radius_mm = 160.0", "table_radius_mm = 100.0", "no larger than the table, 200"),
+        ("table_radius_mm = 160.0", "table_radius_mm = 100.0", "a corner of it reaches"),
         (
             "table_radius_mm = 160.0",
             "table_radius_mm = 20.0",
@@ -363,14 +363,16 @@ def test_what_the_example_only_mentions_is_accepted(
 
 
 def test_blank_and_limits_reach_the_placement(tmp_path: Path) -> None:
-    """The defaults are those that the example states; other ones arrive in base units."""
+    """The defaults are those of the example but for the table, which holds the default base: a
+    corner is hypot(115, 115) + 25 = 187.6 mm from its middle. Other ones arrive in base units."""
     path = small_project(tmp_path)
     text = path.read_text()
     stated = read_project(path)
     path.write_text(re.sub(r"(?s)\[blank\].*?(?=\[setup\.a\])", "", text))
     left_out = read_project(path)
-    assert left_out.blank == stated.blank
-    assert left_out.reach.table_radius == stated.reach.table_radius == 160.0
+    assert left_out.blank.base == stated.blank.base
+    assert stated.reach.table_radius == 160.0
+    assert 187.6 < left_out.reach.table_radius == 190.0
     for key, value in {
         "base_mm": "[240.0, 200.0]",
         "height_mm": "180.0",

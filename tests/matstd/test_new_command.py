@@ -111,6 +111,9 @@ TABLES = {
 BUILT = sorted(TABLES.keys() - {"micro"})  # kinds whose table is large enough for a standard
 
 
+QUICK = ("three-axis", "two-tables")  # an oblong table, and a round one that binds
+
+
 def like(kind, folder):
     path = folder / "machine.toml"
     assert main(["new", "machine", "--like", kind, "-o", str(path)]) == 0
@@ -143,7 +146,7 @@ def proposed(kind, folder, *more):
 
 @pytest.mark.parametrize(
     "kind",
-    [pytest.param(k, marks=() if k == "three-axis" else pytest.mark.slow) for k in BUILT],
+    [pytest.param(k, marks=() if k in QUICK else pytest.mark.slow) for k in BUILT],
 )
 def test_a_proposed_project_passes_the_first_checks_of_a_design(kind, tmp_path, capsys):
     code, path = proposed(kind, tmp_path)
@@ -152,6 +155,12 @@ def test_a_proposed_project_passes_the_first_checks_of_a_design(kind, tmp_path, 
     brief = replace(brief, options=replace(brief.options, sites=60))  # a tenth of the usual places
     check_seat(brief)
     feasibility(brief).check()
+    # corners are rounded with 25 mm; on a disc they are the farthest places of a square
+    half, table = brief.blank.base.half_size[0], [float(size) for size in TABLES[kind]]
+    farthest = np.hypot(half - 25.0, half - 25.0) + 25.0 if len(table) == 1 else half
+    assert farthest <= 0.5 * min(table)
+    if kind == "two-tables":  # 260 mm: hypot(105, 105) + 25 = 173.5 mm over a radius of 160 mm
+        assert half == 120.0
     said = capsys.readouterr().out
     assert f"next: matstd design {path} -o {path.parent / 'out'}" in said
     assert "the base covers" in said

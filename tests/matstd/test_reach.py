@@ -176,7 +176,7 @@ def test_patches_that_do_not_fit_are_reported_with_a_picture(
 ) -> None:
     monkeypatch.setattr("matstd.stages.design.design_standard", None)  # not begun
     monkeypatch.setattr(side_by_side, "room_for", with_few_sites)
-    wide = {r"\Z": "\n[limits]\ngap_mm = 120.0\n"}
+    wide = {r"\Z": "gap_mm = 120.0\n"}  # behind the table [limits]
     path, out = changed(tmp_path, "vertical", wide, {}), tmp_path / "out"
     assert main(["design", str(path), "-o", str(out)]) == 2
     (message,) = re.findall(r"(?m)^matstd .*", capsys.readouterr().err)
@@ -199,7 +199,7 @@ def test_patches_that_do_not_fit_are_reported_with_a_picture(
 def test_what_would_do_does(tmp_path, monkeypatch, name, limits, expected, wish) -> None:
     """A tenth of the usual places are tried: what is refused is, and the wish that is met."""
     monkeypatch.setattr(side_by_side, "_fewer_patches", lambda *_: ())
-    path = changed(tmp_path, name, {r"\Z": f"\n[limits]\n{limits}\n"}, {})
+    path = changed(tmp_path, name, {r"\Z": f"{limits}\n"}, {})
     project = read_project(path)
     project = replace(project, options=replace(project.options, sites=40))
     poses = np.linspace(-3.0, 3.0, 12)[:, None] * np.ones(len(project.chain.rotary_axes))

@@ -59,8 +59,11 @@ def refusal(project: Brief) -> str:
 
 @cache
 def whole_base() -> trimesh.Trimesh:
-    """The base as two boxes and four round corners, by a library that knows nothing of ours."""
-    a, b = SIDES
+    return rounded_plate(*SIDES)
+
+
+def rounded_plate(a: float, b: float) -> trimesh.Trimesh:
+    """A base as two boxes and four round corners, by a library that knows nothing of ours."""
     boxes = [(a - 2 * CORNER, b, THICK), (a, b - 2 * CORNER, THICK)]
     parts = [trimesh.creation.box(extents=sides) for sides in boxes]
     for x in (-1, 1):
@@ -73,6 +76,11 @@ def whole_base() -> trimesh.Trimesh:
 
 def base_mesh() -> trimesh.Trimesh:
     return whole_base().copy()
+
+
+def disc(radius: float) -> trimesh.Trimesh:
+    """A table through which a plate may stand."""
+    return trimesh.creation.cylinder(radius=radius, height=200.0, sections=1024)
 
 
 def placed(rng: np.random.Generator, T: np.ndarray) -> dict[str, object]:
@@ -168,6 +176,34 @@ def test_standards_over_the_edge_are_those_with_volume_outside(is_disc: bool) ->
             moved = base_mesh().apply_transform(pose(T[:3, :3], np.array(origin)))
             assert moved.volume - shared(moved, tables[allowed + NEAR]) < 1.0
     assert min(seen.values()) > 2
+
+
+def test_corners_over_a_round_table_are_the_fault_of_the_base() -> None:
+    """A square of 320 mm on a disc of 320 mm: corners at hypot(135, 135) + 25 - 160 = 55.92 mm.
+
+    What the refusal proposes is joined with the table by manifold3d.
+    """
+    square = replace(example().blank, base=base_of((320.0, 320.0)))
+    project = with_table(replace(example(), blank=square, overhang=0.0), diameter_mm=320.0)
+    said = refusal(project)
+    assert "blank.base_mm: found [320.0, 320.0]" in said
+    assert "a corner of it reaches 55.9 mm beyond the edge, limits.overhang_mm is 0.0" in said
+    sides = literal_eval(said.rsplit("base_mm = ", 1)[1].removesuffix(" would do"))
+    assert refusal(replace(project, blank=replace(square, base=base_of(sides)))) == ""
+    assert rounded_plate(*sides).volume - shared(rounded_plate(*sides), disc(160.0)) < 1.0
+    larger = [side + 10.0 for side in sides]
+    assert rounded_plate(*larger).volume - shared(rounded_plate(*larger), disc(160.0)) > 1.0
+    assert refusal(replace(project, overhang=55.95)) == ""
+    assert "55.9 mm beyond the edge" in refusal(replace(project, overhang=55.9))
+
+
+def test_where_no_smaller_base_would_do_the_overhang_is_tried() -> None:
+    """160 mm is the smallest side there is; its corners need a disc of 205.6 mm."""
+    small = replace(example().blank, base=base_of((160.0, 160.0)))
+    project = with_table(replace(example(), blank=small, overhang=0.0), diameter_mm=205.0)
+    assert "0.3 mm beyond the edge" in refusal(project)
+    assert refusal(project).endswith("limits.overhang_mm = 1 would do")
+    assert refusal(with_table(project, diameter_mm=205.6)) == ""
 
 
 def setup_at(x: float, y: float, z: float) -> Setup:
