@@ -4,14 +4,14 @@ A refusal names the body, the distance by which it is wrong, and a change that w
 places of the same body, the nearest first, until one leaves fewer faults.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from matstd.artefact.body import Standard
 from matstd.artefact.brief import LEAST_SIDE, Brief, base_of
-from matstd.artefact.feasibility.turning import between, meetings, seen_from_face
+from matstd.artefact.feasibility.turning import between, meetings, pose_words, seen_from_face
 from matstd.artefact.reach import Body, Solid, hangs, table_face
 from matstd.artefact.seat import (
     CONTACT_DEPTH,
@@ -167,14 +167,14 @@ def _overhanging(brief: Brief, setup: Setup, key: str) -> Fault | None:
     beyond, in_the_middle = (round(over_edge(table, base, at), 6) for at in (T, pose(T[:3, :3])))
     if beyond <= allowed:
         return None
-    words = f"{beyond:.1f} mm beyond the edge, limits.overhang_mm is {allowed:.1f}"
-    if (apart := off_table(table, base, T)) > 0.0:
-        words = f"it stands {apart:.1f} mm beside it, its far corner {words}"
-    elif in_the_middle > allowed:
-        words = f"a corner of it reaches {words}"
-    else:
-        words = f"it reaches {words}"
-    words = f"a base on the table ([workshop.table]): {words}"
+    apart = off_table(table, base, T)
+    part = "a corner of it reaches"
+    if apart > 0.0:
+        part = f"it stands {apart:.1f} mm beside it, its far corner"
+    words = (
+        f"a base on the table ([workshop.table]): {part} {beyond:.1f} mm beyond the edge, "
+        f"limits.overhang_mm is {allowed:.1f}"
+    )
     if apart == 0.0 and in_the_middle > allowed:
         return Fault("blank.base_mm", [2.0 * side for side in base.half_size], words)
     return Fault(key, T[:3, 3].round(6).tolist(), words)
@@ -249,22 +249,12 @@ def _extent(common: Array) -> tuple[float, Array]:
 def _turning_faults(brief: Brief, setup: Setup) -> Iterator[Fault]:
     """Bodies on other axes that meet the base or the table while it turns."""
     for one in meetings(brief, setup):
-        at = _pose_words(brief, one.pose)
+        at = pose_words(brief, one.pose)
         words = (
             f"{one.body.name} clear of what turns past it: at {at} it reaches {one.depth:.1f} mm "
             f"into {one.met}"
         )
         yield Fault(f"workshop.bodies.{one.number}.at_mm", list(one.body.at), words)
-
-
-def _pose_words(brief: Brief, readings: Mapping[str, float]) -> str:
-    """Readings of axes in the units of the file: `B = -90, C = 45 degrees`."""
-    is_rotary = [brief.chain.link(name).kind == "rotary" for name in readings]
-    shown = [
-        f"{name} = {value / DEG if turns else value:.4g}"
-        for (name, value), turns in zip(readings.items(), is_rotary, strict=True)
-    ]
-    return ", ".join(shown) + (" degrees" if all(is_rotary) else "")
 
 
 def _faults_in_standard(brief: Brief, finished: Finished) -> Iterator[Fault]:
@@ -285,7 +275,7 @@ def _faults_in_standard(brief: Brief, finished: Finished) -> Iterator[Fault]:
                 near = apply(inverse(T_face_artefact), common.mean(axis=0, keepdims=True))
                 met = min(standard.bodies, key=lambda n: standard.bodies[n].distance(near)[0])
                 pose = {name: float(row[brief.chain.axis_index(name)]) for name in names}
-                at = f" at {_pose_words(brief, pose)}" if pose else ""
+                at = f" at {pose_words(brief, pose)}" if pose else ""
                 words = f"{body.name} beside the standard: it reaches {depth:.1f} mm into {met}{at}"
                 yield Fault(f"workshop.bodies.{i}.at_mm", list(body.at), words, way)
                 break
@@ -381,12 +371,12 @@ def _other_seats(brief: Brief, name: str) -> Iterator[tuple[str, Brief]]:
 
 def _smaller_bases(brief: Brief) -> Iterator[tuple[str, Brief]]:
     """Bases of the same proportions, the largest first."""
-    sides = 2.0 * np.array(brief.blank.base.half_size)
-    for longest in np.arange(sides.max() - _SIDE_STEP, LEAST_SIDE - 1.0, -_SIDE_STEP):
-        a, b = map(float, np.floor(longest * sides / sides.max() / _SIDE_STEP) * _SIDE_STEP)
-        if min(a, b) >= LEAST_SIDE:
-            blank = replace(brief.blank, base=base_of((a, b)))
-            yield f"blank.base_mm = {_list(np.array([a, b]))}", replace(brief, blank=blank)
+    half = np.array(brief.blank.base.half_size)
+    for longest in np.arange(2.0 * half.max() - _SIDE_STEP, LEAST_SIDE - 1.0, -_SIDE_STEP):
+        sides = np.floor(longest * half / half.max() / _SIDE_STEP) * _SIDE_STEP
+        if sides.min() >= LEAST_SIDE:
+            blank = replace(brief.blank, base=base_of((float(sides[0]), float(sides[1]))))
+            yield f"blank.base_mm = {_list(sides)}", replace(brief, blank=blank)
 
 
 def _more_overhang(brief: Brief, setups: Sequence[Setup]) -> Iterator[tuple[str, Brief]]:

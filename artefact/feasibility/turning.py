@@ -4,7 +4,7 @@ A clamp on the cradle of a trunnion stands still while the table turns the stand
 Programs turn through every reading between two table poses, so the whole workspace is looked at.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -105,3 +105,13 @@ def _apart(corners: Array, other: Array) -> bool:
     """Whether the boxes round two bodies do not meet."""
     low, high = corners.min(axis=0), corners.max(axis=0)
     return bool(np.any(low >= other.max(axis=0)) or np.any(high <= other.min(axis=0)))
+
+
+def pose_words(brief: Brief, readings: Mapping[str, float]) -> str:
+    """Readings of axes in the units of the file: `B = -90, C = 45 degrees`."""
+    is_rotary = [brief.chain.link(name).kind == "rotary" for name in readings]
+    shown = [
+        f"{name} = {value / DEG if turns else value:.4g}"
+        for (name, value), turns in zip(readings.items(), is_rotary, strict=True)
+    ]
+    return ", ".join(shown) + (" degrees" if all(is_rotary) else "")

@@ -36,7 +36,10 @@ def with_setup(line: str) -> dict[str, str]:
     return {r"\Z": f"\n[setup.a]\n{line}\n"}
 
 
-LARGE_TABLE = "\n[workshop.table]\nsides_mm = [4200.0, 4200.0]\n"
+def on_large_table(place: str) -> dict[str, str]:
+    """The standard at a place of a table that is larger than that of the example."""
+    table = "\n[workshop.table]\nsides_mm = [4200.0, 4200.0]\n"
+    return {r"^table_radius_mm = .*\n": "", **with_setup(f"origin_mm = {place}{table}")}
 
 
 def refusal(project: Brief) -> str:
@@ -80,12 +83,12 @@ def test_the_travel_that_binds_is_named_and_enough(tmp_path: Path) -> None:
 
 
 def test_the_nearest_wish_does(tmp_path: Path) -> None:
-    far = with_setup("origin_mm = [700.0, 0.0, 0.0]" + LARGE_TABLE)
+    far = on_large_table("[700.0, 0.0, 0.0]")
     message = refusal(read_project(changed(tmp_path, "vertical", far, {})))
     assert "X would have to go to" in message
     place = re.search(r"setup.a.origin_mm = (\[.*?\]) would do", message)
     assert place, message
-    near = with_setup(f"origin_mm = {place[1]}" + LARGE_TABLE)
+    near = on_large_table(place[1])
     assert is_reached(read_project(changed(tmp_path, "vertical", near, {})))
 
 
@@ -113,7 +116,7 @@ def test_a_refused_command_leaves_its_picture_alone(
 ) -> None:
     # whatever would design has not begun: it would fail with a traceback
     monkeypatch.setattr("matstd.stages.design.design_standard", None)
-    far = with_setup("origin_mm = [1900.0, 0.0, 0.0]" + LARGE_TABLE)
+    far = on_large_table("[1900.0, 0.0, 0.0]")
     path, out = changed(tmp_path, "gantry", far, {}), tmp_path / "out"
     for _ in range(2):  # its own picture does not stand in the way of the next run
         assert main(["design", str(path), "-o", str(out)]) == 2

@@ -218,7 +218,7 @@ def setup_at(x: float, y: float, z: float) -> Setup:
         ((0.0, 0.0, 30.0), "it floats 30.0 mm above it"),
         ((0.0, 0.0, -30.0), "its lowest corner lies 30.0 mm below"),
         # corner: hypot(60 + 115, 95) + 25 - 160 = 64.12
-        ((60.0, 0.0, 0.0), "it reaches 64.1 mm beyond the edge"),
+        ((60.0, 0.0, 0.0), "a corner of it reaches 64.1 mm beyond the edge"),
     ],
 )
 def test_distances_by_hand(place: tuple[float, float, float], expected: str) -> None:

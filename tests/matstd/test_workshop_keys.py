@@ -75,7 +75,7 @@ def test_every_model_of_the_library_is_a_probe(tmp_path):
         ("tool = 12", "tool = 0", "workshop.tool"),
         ("tool = 12", "probing_feed_mm_min = 5000", "workshop.probing_feed_mm_min"),
         ("diameter_mm = 360.0", "height_mm = 1.0", "workshop.table: .* diameter_mm or sides_mm"),
-        ("[workshop.table]", "[limits]\ntable_radius_mm = 160.0\n[workshop.table]",
+        ("[limits]", "[limits]\ntable_radius_mm = 160.0",
          "limits.table_radius_mm: .* no such key beside"),
         ('name = "POST"', 'name = "CLAMP1"', "workshop.bodies.1.name: .* a name of its own"),
         ("sides_mm = [40.0, 25.0]", "", "workshop.bodies.0: .* sides_mm, diameter_mm or stl"),
