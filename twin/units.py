@@ -21,7 +21,11 @@ WHOLE_DEGREES, ROUNDING = 5.0, 0.1
 within the second, degrees, or within half of their last decimal."""
 MIN_DECIMALS = 2
 """Decimals of an angle in radians: with one, 5.7 degrees apart, anything may be meant."""
-USUAL_TOOL_LENGTH = 160.0  # usual one from the gauge point to the tip, mm
+USUAL_TOOL_LENGTH, TOOL_LENGTHS = 160.0, (40.0, 1000.0)
+"""From the gauge point to the tip, mm: the usual length of a probe or a tool, and the shortest and
+longest that are taken without a question."""
+LENGTHS = (("cm", 10.0), ("inches", 25.4), ("metres", 1e3), ("µm", 1e-3), ("tenths of a mm", 0.1))
+"""Units in which the length of a probe may have been typed instead of mm, and one of each in mm."""
 OTHERS = {
     "mm": (("metres", 1e3), ("µm", 1e-3)),
     "µm": (("mm", 1e3), ("nm", 1e-3)),
@@ -59,6 +63,29 @@ def meant_in_radians(low: float, high: float) -> tuple[float, float] | None:
     meant = tuple(WHOLE_DEGREES * round(end / WHOLE_DEGREES) for end in ends)
     is_whole = all(abs(e - m) <= allowed for e, m in zip(ends, meant, strict=True))
     return (meant[0], meant[1]) if is_whole else None
+
+
+def doubtful_length(length: float, known: Sequence[float] = (USUAL_TOOL_LENGTH,)) -> str | None:
+    """What to ask about the length of a probe or a tool; None for one that is plausible.
+
+    Args:
+        length: From the gauge point to the tip, mm.
+        known: Lengths of probes of the same machine: lengths near them are plausible, too.
+
+    Example:
+        >>> doubtful_length(16.0), doubtful_length(6.3), doubtful_length(100.0)
+        ('is it in cm, 160 mm?', 'is it in inches, 160 mm?', None)
+        >>> doubtful_length(30.0, known=(32.0,))
+    """
+    low, high = TOOL_LENGTHS
+    if low <= length <= high or any(k / NEAR < length < k * NEAR for k in known):
+        return None
+    usual = min(known, default=USUAL_TOOL_LENGTH)
+    meant = [(name, factor * length) for name, factor in LENGTHS if low <= factor * length <= high]
+    if length <= 0.0 or not meant:
+        return f"{low:g} to {high:g} mm from the gauge point to the tip"
+    name, mm = min(meant, key=lambda one: abs(math.log(one[1] / usual)))
+    return f"is it in {name}, {mm:.4g} mm?"
 
 
 def in_another_unit(

@@ -1,7 +1,7 @@
 """Project file (TOML, format "project/1"): the standard and its machine."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -50,7 +50,7 @@ from matstd.twin.files import (
 )
 from matstd.twin.machine import Chain
 from matstd.twin.record import Setup
-from matstd.twin.units import DEG, UM, URAD
+from matstd.twin.units import DEG, UM, URAD, doubtful_length
 
 RENAMED_KEYS = {
     "standard.drawn_machines": "standard.robust_machines",
@@ -128,6 +128,9 @@ class ProjectTable(Table):
     """path of the machine file, relative to this file"""
     seed: int = Field(ge=0, examples=[1])
     """seed of all random numbers; the same seed gives the same standard"""
+    confirmed: list[str] = Field(default_factory=list, examples=[["probe.length_mm"]])
+    """keys of this file whose values look like a mistake and are meant, such as a probe of 30 mm;
+    they are not asked about"""
     control: str = "itnc530"
     """control of the programs: a name, or a [dialect file](dialect.md), relative to this file"""
     task: str | None = Field(default=None, examples=["task.toml"])
@@ -181,10 +184,19 @@ def read_project(path: str | Path, montecarlo: Mapping[str, float] | None = None
     try:
         table = checked(ProjectTable, data, path)
         # first: a number in a wrong unit also contradicts other keys
-        refuse_unit_slips(table, path)
+        refuse_unit_slips(table, path, _doubtful_probes(table, path), table.confirmed)
         return _resolved(table, path, tuple(remarks))
     except BadFile as error:
         raise as_written(error, dict(renamed)) from error
+
+
+def _doubtful_probes(table: ProjectTable, path: Path) -> Iterator[BadFile]:
+    """Probes of a length that is usual in another unit."""
+    further = {f"workshop.probes.{i}": probe for i, probe in enumerate(table.workshop.probes)}
+    for key, probe in {"probe": table.probe, **further}.items():
+        length = probe.length_mm
+        if length is not None and (question := doubtful_length(length)) is not None:
+            yield BadFile(path, f"{key}.length_mm", f"{length:g}", f"mm; {question}")
 
 
 def _resolved(table: ProjectTable, path: Path, remarks: tuple[str, ...]) -> Brief:

@@ -55,7 +55,7 @@ from matstd.twin.frames import Array
 from matstd.twin.machine import Chain
 from matstd.twin.model import is_saved
 from matstd.twin.record import Touches
-from matstd.twin.units import USUAL_TOOL_LENGTH, in_another_unit
+from matstd.twin.units import USUAL_TOOL_LENGTH, doubtful_length
 
 SOMETIMES = (
     "*/*",
@@ -93,7 +93,6 @@ class Shares:
             save(draw_shares_along(self.touches.time, self.whole, self.each), place / names[1])
 
 
-LONGEST_TOOL = 1e4  # mm
 PROBING = re.compile(r"\bSTANDARD (\S+) SETUP \S+")
 """Stands in the head of every probing program: the standard that it was written for."""
 
@@ -304,11 +303,11 @@ def compensate(
         'X0 Z0 Y0 L100'
     """
     register_effects()
-    checked_length(tool_length)
     name = str(model) if isinstance(model, str | Path) else "the model"
     state = state or State()
     with drives_stated(name):
-        known, remarks, content = machine_errors(model, errors, state)
+        known, remarks, content, probes = machine_errors(model, errors, state)
+    checked_length(tool_length, probes)
     for text in add:
         known = with_added(known, text)
     with drives_stated(name):
@@ -342,18 +341,22 @@ def _controls(argument: str, names: Iterable[str]) -> list[str]:
     return list(dict.fromkeys(names))
 
 
-def checked_length(tool_length: float) -> None:
-    """Refuse the length of a tool that no spindle holds, or that is in metres.
+def checked_length(tool_length: float, probes: Sequence[float] = ()) -> None:
+    """Refuse the length of a tool that no spindle holds, or that is in another unit.
+
+    Args:
+        tool_length: From the gauge point to the tip, mm; 0 for the gauge point itself.
+        probes: Lengths of the probes with which the machine was measured, mm.
 
     Raises:
-        BadArgument: Beyond 0 to 10 000 mm, or a usual length if read in metres or µm.
+        BadArgument: With the unit in which it was probably stated.
     """
-    if not 0.0 <= tool_length < LONGEST_TOOL:
-        raise BadArgument("tool_length", f"{tool_length:g}", "a length from 0 to 10 000 mm")
-    slip = in_another_unit([tool_length], "mm", USUAL_TOOL_LENGTH)
-    if slip is not None:
-        meant = f"mm; is it in {slip[0]}, {slip[1] * tool_length:g} mm?"
-        raise BadArgument("tool_length", f"{tool_length:g}", meant)
+    question = doubtful_length(tool_length, probes or (USUAL_TOOL_LENGTH,))
+    if tool_length == 0.0 or question is None:
+        return
+    probed = ", ".join(f"{length:g}" for length in probes)
+    beside = f" (the machine was probed with {probed} mm)" if probes else ""
+    raise BadArgument("tool_length", f"{tool_length:g}", f"mm; {question}{beside}")
 
 
 def within_travel(chain: Chain, argument: str, readings: Mapping[str, float]) -> dict[str, float]:

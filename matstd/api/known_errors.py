@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,30 +18,47 @@ from matstd.twin.library import parse_effect, parse_sized_effect
 from matstd.twin.model import is_saved
 
 
+class KnownErrors(NamedTuple):
+    """Errors of a machine as a model, a diagnosis or an error file states them."""
+
+    errors: MachineErrors
+    remarks: tuple[Remark, ...]  # on the model
+    content: bytes  # that tables have a hash of
+    probes: tuple[float, ...] = ()  # lengths of the probes that touched, mm
+
+
 def machine_errors(
     model: Diagnosis | Fit | SavedModel | str | Path, errors: str | Path | None, state: State
-) -> tuple[MachineErrors, tuple[Remark, ...], bytes]:
-    """Errors of a machine, remarks on their model, and the content that tables have a hash of."""
+) -> KnownErrors:
+    """Errors of a machine at a state of it."""
     if errors is not None and not isinstance(model, str | Path):
         raise BadArgument("errors", errors, "none: the model has errors of its own")
     if isinstance(model, Diagnosis):
-        return MachineErrors.of_model(model.model, state), (), model.model_text.encode()
+        return _of_model(model.model, (), model.model_text.encode(), state)
     if isinstance(model, Fit):
         model = model_of(model)
     if isinstance(model, SavedModel):
         known = model.estimates.mean.tobytes() + model.estimates.root.tobytes()
-        return MachineErrors.of_model(model, state), model.left_out, known
+        return _of_model(model, model.left_out, known, state)
     content = Path(model).read_bytes if errors is None else None
     if kind_of(read_text(model)) != "machine":
         if content is None:
             raise BadArgument("errors", errors, f"none: {model} has errors of its own")
         saved = read_model(model)
-        return MachineErrors.of_model(saved, state), saved.left_out, content()
+        return _of_model(saved, saved.left_out, content(), state)
     if errors is None:
         raise DesignError(f"{model}: a machine without errors; expected --errors ERRORS.toml")
     chain = read_machine(model)
     found = MachineErrors.of_errors(chain, read_errors(errors, chain), state)
-    return found, (), Path(model).read_bytes() + Path(errors).read_bytes()
+    return KnownErrors(found, (), Path(model).read_bytes() + Path(errors).read_bytes())
+
+
+def _of_model(
+    model: SavedModel, remarks: tuple[Remark, ...], content: bytes, state: State
+) -> KnownErrors:
+    """Errors of a model, with the probes that it was learnt with."""
+    lengths = tuple(dict.fromkeys(probe[0] for probe in model.source.probes))
+    return KnownErrors(MachineErrors.of_model(model, state), remarks, content, lengths)
 
 
 @contextmanager

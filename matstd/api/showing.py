@@ -189,7 +189,7 @@ def _known(
     if model is not None:
         saved = read_model(model) if isinstance(model, str | Path) else model
         with drives_stated(str(model) if isinstance(model, str | Path) else "the model"):
-            known, found, _ = machine_errors(saved, None, state)
+            known, found, *_ = machine_errors(saved, None, state)
         _refuse_other_machine(chain, known.chain, model)
         remarks += [remark_sentence(one) for one in found]
         names.append(Path(model).name if isinstance(model, str | Path) else "the model")

@@ -44,6 +44,10 @@ FACES = {280.0: 6, 240.0: 5, 200.0: 4, 0.0: 3}
 SHARE_OF_TRAVEL = 0.8
 """Size of a table over the shorter travel across the tool, where no size is stated."""
 
+TABLE_OVER_TRAVEL = 4.0
+"""Table over a travel across the tool from which on that may be one in centimetres; the nine kinds
+have 0.6 to 1.2, lathes with a short Y up to 4."""
+
 WORKSPACE_OVER_BASE = 1.25
 """Workspace over base: workpieces are a quarter larger than what is probed."""
 
@@ -137,12 +141,24 @@ def propose(
             larger=next(fits, None),
             other_place=_other_place(brief, 0.5 * (size[0] - base)),
         )
-    raise DesignError(f"{machine}: no standard from {LEAST:g} mm up can be probed here: {first}")
+    unit = _in_centimetres(chain, size)
+    raise DesignError(
+        f"{machine}: no standard from {LEAST:g} mm up can be probed here: {first}{unit}"
+    )
 
 
 def _in_centimetres(chain: Chain, table: tuple[float, ...]) -> str:
-    """The question whether a table far smaller than the travels is stated in centimetres."""
-    return ", or is the table stated in cm?" if 5.0 * max(table) < _assumed_table(chain) else ""
+    """The question whether the table, or a travel across the tool, is stated in centimetres."""
+    if 5.0 * max(table) < _assumed_table(chain):
+        return ", or is the table stated in cm?"
+    small = small_travels(chain, table)
+    return f", or is the travel of {' and '.join(small)} stated in cm?" if small else ""
+
+
+def small_travels(chain: Chain, table: tuple[float, ...]) -> list[str]:
+    """Axes across the tool whose travel is less than a `1 / TABLE_OVER_TRAVEL` of the table."""
+    across = [a for a in chain.linear_axes if a[0] != "Z"]
+    return [a for a in across if TABLE_OVER_TRAVEL * np.ptp(chain.link(a).range) < min(table)]
 
 
 def _turns(chain: Chain) -> tuple[tuple[float, ...], ...]:

@@ -1,6 +1,8 @@
 """Numbers that were typed in another unit are asked about, whatever their key."""
 
+import re
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -8,9 +10,14 @@ import pytest
 import tomli_w
 
 from matstd.api.compensating import compensate
+from matstd.api.machines import machine_file
 from matstd.artefact.brief import read_project
+from matstd.compensation.field import State
+from matstd.diagnosis.files import model_of
+from matstd.diagnosis.fit import fit_run
 from matstd.twin.errors import BadArgument, BadFile
-from matstd.twin.files import read_machine, read_poses
+from matstd.twin.files import read_machine, read_poses, read_run
+from matstd.twin.library import ordinary_model
 
 ROOT = Path(__file__).parents[2]
 EXAMPLE, MACHINE = ROOT / "examples/hsm600u.toml", ROOT / "examples/hsm600u-machine.toml"
@@ -79,6 +86,39 @@ def test_a_size_in_another_unit_is_refused(table, key, tmp_path) -> None:
             read_project(written(tmp_path, data))
         assert f"{table}.{key}: found" in str(refusal.value)
         assert "\n" not in str(refusal.value)
+
+
+INCH = 25.4  # mm
+
+
+@pytest.mark.parametrize(
+    ("length", "unit", "factor"),
+    [
+        (16.0, "cm", 10.0),
+        (12.5, "cm", 10.0),
+        (6.3, "inches", INCH),
+        (8.66, "inches", INCH),
+        (1600.0, "tenths of a mm", 0.1),
+        (30.0, "cm", 10.0),
+        (0.16, "metres", 1e3),
+    ],
+)
+def test_a_probe_in_another_unit_is_asked_about(length, unit, factor, tmp_path) -> None:
+    """What is proposed is in that unit what was typed, and a project with it is read."""
+    data = project()
+    del data["probe"]["stylus_length_mm"]
+    data["probe"]["length_mm"] = length
+    with pytest.raises(BadFile, match=r"probe\.length_mm: found") as refusal:
+        read_project(written(tmp_path, data))
+    name, meant = re.findall(r"is it in (.*), (.*) mm\?", str(refusal.value))[0]
+    assert name == unit
+    assert float(meant) == pytest.approx(factor * length, rel=1e-3)
+    right = project()
+    right["probe"]["length_mm"] = float(meant)
+    assert read_project(written(tmp_path, right)).probe.length == float(meant)
+    if length > 25.0:  # a probe that a project may confirm
+        confirmed = {"confirmed": ["probe.length_mm"]}
+        assert read_project(written(tmp_path, confirmed | data)).probe.length == length
 
 
 @pytest.mark.parametrize(
@@ -164,5 +204,32 @@ def test_a_tool_in_metres_is_refused(tmp_path) -> None:
         read_poses(poses, read_machine(MACHINE))
     poses.write_text(head + "0,0,-100,0,0,12\n", encoding="utf-8")
     assert len(read_poses(poses, read_machine(MACHINE))[1]) == 1
-    with pytest.raises(BadArgument, match="is it in metres, 160 mm"):
-        compensate(MACHINE, tool_length=0.16)
+
+
+@pytest.mark.parametrize(
+    ("length", "meant"),
+    [
+        (0.16, r"is it in metres, 160 mm\?"),
+        (16.0, r"is it in cm, 160 mm\?"),
+        (6.3, r"is it in inches, 160 mm\?"),
+        (1600.0, r"is it in tenths of a mm, 160 mm\?"),
+        (-160.0, "40 to 1000 mm from the gauge point"),
+    ],
+)
+def test_a_tool_in_another_unit_is_refused(length, meant) -> None:
+    machine, errors = (machine_file("hsm600u", errors=wanted) for wanted in (False, True))
+    with pytest.raises(BadArgument, match=meant):
+        compensate(machine, errors, tool_length=length)
+    assert compensate(machine, errors, tool_length=100.0).datum.length == 100.0
+
+
+def test_a_tool_is_compared_with_the_probe_of_the_model() -> None:
+    """Of a machine that was probed with 32 mm, a tool of 16 mm may be; of one with 160 mm not."""
+    run = read_run(ROOT / "examples/hidden_effect/warm_up.csv")
+    run = run[run.touches.pose % 4 == 0]
+    model = model_of(fit_run(run, ordinary_model(run.touches.chain)))
+    assert [length for length, _ in model.source.probes] == [160.0]
+    with pytest.raises(BadArgument, match=r"in cm, 160 mm\? \(the machine was probed with 160 mm"):
+        compensate(model, tool_length=16.0, state=State(temperature={"spindle": 25.0}))
+    short = replace(model, source=model.source.model_copy(update={"probes": [[32.0, 2.0]]}))
+    assert compensate(short, tool_length=16.0, state=State()).datum.length == 16.0

@@ -1,5 +1,7 @@
 """Slips of units and digits in machine files are refused with what was meant; machines are not."""
 
+import re
+from ast import literal_eval
 from pathlib import Path
 
 import pytest
@@ -32,6 +34,7 @@ def changed(tmp_path: Path, *changes: tuple[str, str]) -> Path:
 
 
 B = "[-110.0, 30.0]"
+ORIGIN = "origin = [0.0, 0.0, -500.0]"
 PIVOT = "[0.0, 0.0, -420.0]"
 
 
@@ -63,11 +66,90 @@ def test_a_slip_is_refused_with_what_was_meant(tmp_path, old, new, words):
         (B, "[-3.0, 3.0]"),
         (B, "[-0.5, 0.7]"),
         (PIVOT, "[0.012, 0.0, -419.93]"),
-        ("[-400.0, 400.0]", "[-10.0, 10.0]"),
+        ("[-400.0, 400.0]", "[-60.0, 60.0]"),
+        (ORIGIN, "origin = [3.0, -3.9, -500.0]"),
+        (ORIGIN, "origin = [0.0, 0.0, -890.0]"),
     ],
 )
 def test_unusual_machines_are_read(tmp_path, old, new):
     read_machine(changed(tmp_path, (old, new)))
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("[-400.0, 400.0]", "[-40.0, 40.0]", "80 mm beside 500 mm of the next axis"),
+        ("[-300.0, 300.0]", "[-30.0, 30.0]", "60 mm beside 500 mm of the next axis"),
+        ("[-500.0, 0.0]", "[-50.0, 0.0]", "50 mm beside 600 mm of the next axis"),
+    ],
+)
+def test_a_travel_in_centimetres_is_asked_about_at_its_axis(tmp_path, old, new, words):
+    """What is proposed is the machine as it was; a machine that is so may confirm it."""
+    asked = changed(tmp_path, (old, new))
+    with pytest.raises(BadFile, match=words) as refusal:
+        read_machine(asked)
+    said = str(refusal.value)
+    (key,) = re.findall(r"axis\.([XYZ])\.range: found", said)
+    proposed = literal_eval(re.findall(r"in cm, (\[.*?\])\?", said)[0])
+    assert proposed == literal_eval(old)
+    confirmed = changed(tmp_path, (old, new), ("[axis.X]", f"{stated(said)}\n\n[axis.X]"))
+    assert read_machine(confirmed).link(key).range == tuple(literal_eval(new))
+
+
+def stated(refusal: str) -> str:
+    """The line with which a refusal says that a value may be confirmed."""
+    return re.findall(r"confirmed = \[.*?\]", refusal)[0]
+
+
+def test_all_travels_in_centimetres_are_asked_about_at_once(tmp_path):
+    """The table then lies 450 mm below the end of Z, nine of its travels."""
+    changes = [(f"[-{v}.0, {w}.0]", f"[-{v / 10}, {w / 10}]") for v, w in TRAVELS]
+    with pytest.raises(BadFile, match="3 faults") as refusal:
+        read_machine(changed(tmp_path, *changes))
+    assert re.findall(r"axis\.(.)\.range: found", str(refusal.value)) == ["X", "Y", "Z"]
+    assert "a table 450 mm beyond" in str(refusal.value)
+
+
+TRAVELS = ((400, 400), (300, 300), (500, 0))
+
+
+@pytest.mark.parametrize(
+    ("origin", "words"),
+    [
+        ([36.0, -48.0, -500.0], "60 mm off the line of C"),  # 36² + 48² = 60²
+        ([0.0, 0.0, -1500.0], "1000 mm beyond the travel along Z"),
+        ([0.0, 0.0, 500.0], "500 mm beyond the travel along Z"),
+        ([0.0, 0.0, -30.0], "with Z up to 0"),
+        ([-900.0, 0.0, -500.0], "500 mm beyond the travel along X"),
+    ],
+)
+def test_a_table_beside_its_line_or_out_of_reach_is_asked_about(tmp_path, origin, words):
+    asked = (ORIGIN, f"origin = {origin}")
+    with pytest.raises(BadFile, match=rf"workpiece\.origin: found .*{words}") as refusal:
+        read_machine(changed(tmp_path, asked))
+    line = stated(str(refusal.value))
+    assert line == 'confirmed = ["workpiece.origin"]'
+    chain = read_machine(changed(tmp_path, asked, ("[axis.X]", f"{line}\n\n[axis.X]")))
+    assert chain.table_origin.tolist() == origin
+
+
+def test_a_cradle_may_carry_its_table_at_any_height(tmp_path):
+    """A line of X below a plate: seen along the tool they cross. Beside it, they do not."""
+    text = (ROOT / "examples/machines/four-axis-machine.toml").read_text(encoding="utf-8")
+    path = tmp_path / "machine.toml"
+    for place, off in (("[0.0, 0.0, -330.0]", None), ("[0.0, 25.0, -330.0]", "25 mm off")):
+        path.write_text(re.sub(r"origin = \[.*\]", f"origin = {place}", text), encoding="utf-8")
+        if off is None:
+            read_machine(path)
+            continue
+        with pytest.raises(BadFile, match=f"{off} the line of A"):
+            read_machine(path)
+
+
+def test_what_is_confirmed_must_be_asked_about(tmp_path):
+    for line in ('confirmed = ["axis.X.range"]', 'confirmed = ["axis.X.rnage"]'):
+        with pytest.raises(BadFile, match=r"confirmed: found .*expected keys that are asked about"):
+            read_machine(changed(tmp_path, ("[axis.X]", f"{line}\n\n[axis.X]")))
 
 
 def test_a_zero_in_the_centre_of_rotation_is_no_pivot_in_metres(tmp_path):

@@ -12,6 +12,7 @@ from matstd.twin.files.pose_file import read_poses, reading_columns
 from matstd.twin.files.run_file import SetupTable, read_run
 from matstd.twin.files.run_writer import write_run
 from matstd.twin.files.sensor_file import SensorRecord, read_sensors
+from matstd.twin.files.slips import refuse_unit_slips
 from matstd.twin.files.table import CsvTable
 from matstd.twin.files.toml import (
     kind_of,
@@ -20,7 +21,6 @@ from matstd.twin.files.toml import (
     read_text,
     read_toml,
 )
-from matstd.twin.files.unit_slips import refuse_unit_slips
 from matstd.twin.files.whole import refuse_to_overwrite, write_whole, written_whole
 
 __all__ = [

@@ -36,6 +36,7 @@ MACHINES = (
 """Kinds of machines with a template of their own."""
 
 IN_METRES = 10.0  # a table smaller than this, mm, is one in metres
+WORTH_A_SET_UP = 20.0  # mm by which a second set-up must be moved to be worth its time
 NEEDS_MACHINE = ("project", "run")  # kinds that name a machine file
 
 
@@ -152,8 +153,16 @@ def _proposed(args: argparse.Namespace) -> int:
 
 def _gains(found: Proposal) -> list[str]:
     """What the table was taken for, and what a larger base or another place would gain."""
+    import numpy as np
+
+    from matstd.stages.proposal import small_travels
+
     size = " x ".join(f"{value:g}" for value in found.table)
-    lines = []
+    lines = [
+        f"axis {name} travels {np.ptp(found.brief.chain.link(name).range):g} mm beside a table of "
+        f"{min(found.table):g} mm: is axis.{name}.range of the machine in cm?"
+        for name in small_travels(found.brief.chain, found.table)
+    ]
     if found.is_assumed:
         lines.append(f"table taken to be {size} mm, from the travels; state it with --table-mm")
     covered = f"the base covers {100.0 * found.share_of_table(found.base):.0f} % of the table"
@@ -161,7 +170,7 @@ def _gains(found: Proposal) -> list[str]:
         more = 100.0 * found.share_of_table(found.larger)
         covered += f"; a base of {found.larger:g} mm would cover {more:.0f} %"
     lines.append(covered + ": outside of what is probed the model extrapolates")
-    if found.other_place:
+    if found.other_place > WORTH_A_SET_UP:
         reach = found.other_place + 0.5 * found.base
         lines.append(
             f"a second set-up [setup.b] with origin_mm = [{found.other_place:g}, 0, 0] would probe "
