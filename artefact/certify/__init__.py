@@ -10,7 +10,7 @@ from matstd.artefact.certify.calibration_fit import CalibrationFit, fit_calibrat
 from matstd.artefact.certify.cmm_points_file import read_cmm_points
 from matstd.artefact.certify.dmis import dmis_program
 from matstd.artefact.certify.reversal import merged_orientations
-from matstd.artefact.certify.task_places import check_places, like_task, that_prove
+from matstd.artefact.certify.task_places import check_places, farthest_off, like_task, that_prove
 from matstd.artefact.certify.true_places import displaced_features
 from matstd.artefact.certify.verdicts import Allowed, CommonCause, with_verdicts
 from matstd.artefact.certify.waviness import MAX_SPACING
@@ -23,6 +23,7 @@ __all__ = [
     "check_places",
     "displaced_features",
     "dmis_program",
+    "farthest_off",
     "fit_calibration",
     "like_task",
     "merged_orientations",

@@ -13,6 +13,7 @@ from matstd.twin.units import DEG, UM
 
 _MAX_OFFSET = 2.0 * UM  # rms of touches off the standard that evaluated them: its sag
 # is some tenths of a µm, a piece differs from its design by 5 to 50 µm
+_OTHER_PIECE = 0.5  # touches farther off, mm, were made on another piece
 _EDGE = 1e-6  # rad and 1/mm: ranges include their ends in spite of rounding
 
 
@@ -83,14 +84,9 @@ def check_places(standard: Standard, touches: Touches, path: str | Path) -> None
     Raises:
         BadFile: The touches lie off its surfaces.
     """
-    that_prove(standard, touches)
-    square: list[float] = []
-    for name in dict.fromkeys(touches.feature.tolist()):
-        surface, points = standard.features[name], touches.point[touches.feature == name]
-        uv = surface.project(points)
-        there = np.isfinite(uv).all(axis=1)
-        square += ((points[there] - surface.point(uv[there])) ** 2).sum(axis=1).tolist()
-    rms = float(np.sqrt(np.mean(square))) if square else 0.0
+    off = off_surfaces(standard, touches)
+    there = np.isfinite(off)
+    rms = float(np.sqrt(np.mean(off[there] ** 2))) if there.any() else np.inf
     if rms > _MAX_OFFSET:
         other = "the design" if standard.known else "a calibration of it"
         raise BadFile(
@@ -99,6 +95,46 @@ def check_places(standard: Standard, touches: Touches, path: str | Path) -> None
             f"touches {rms / UM:.1f} µm rms off the surfaces of standard '{standard.name}'",
             f"the file of the standard that the run was evaluated with: {other}, perhaps",
         )
+
+
+def off_surfaces(standard: Standard, touches: Touches) -> Array:
+    """Distance of every touch from the feature that it names, (N,), mm.
+
+    A touch that names none is compared with all. It is infinite where a point is beside a face.
+
+    Raises:
+        DesignError: A feature that the standard does not have.
+    """
+    that_prove(standard, touches[touches.feature != ""])
+    off = np.full(len(touches), np.inf)
+    for name in dict.fromkeys(touches.feature.tolist()):
+        rows = np.flatnonzero(touches.feature == name)
+        points = touches.point[rows]
+        for surface in [standard.features[name]] if name else standard.features.values():
+            uv = surface.project(points)
+            there = np.isfinite(uv).all(axis=1)
+            foot = np.linalg.norm(points[there] - surface.point(uv[there]), axis=1)
+            off[rows[there]] = np.minimum(off[rows[there]], foot)
+    return off
+
+
+def farthest_off(standard: Standard, touches: Touches, path: str | Path) -> float:
+    """How far the touches of a run without a stamp lie off a standard at most, mm.
+
+    Raises:
+        DesignError: A feature that the standard does not have, or touches beside its features.
+    """
+    off = off_surfaces(standard, touches)
+    far = np.flatnonzero(off > _OTHER_PIECE)
+    if len(far):
+        worst = int(np.argmax(off))
+        by = f"{off[worst]:.1f} mm off" if np.isfinite(off[worst]) else "beside"
+        raise DesignError(
+            f"{path}: {len(far)} of {len(off)} touches lie off standard '{standard.name}', one of "
+            f"them {by} {touches.feature[worst] or 'all features'}; expected the standard that was "
+            "probed"
+        )
+    return float(off.max())
 
 
 def curvature(standard: Standard, touches: Touches) -> Array:

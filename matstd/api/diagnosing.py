@@ -197,7 +197,7 @@ def diagnose(
     """
     same = "so that its estimates are made anew: no touch counts twice"
     run, start, saved, title = starting_run(runs, model, same, hold_out, pitch)
-    body = probed_body(standard, runs, run)
+    run, body = probed_body(standard, runs, run)
     # a model of this very run would count its touches twice as a prior
     before = saved if saved and not is_learnt_from(saved, run) else None
     added = named_effects(add, start.effects, run)
@@ -371,7 +371,7 @@ def compare(
     run, start, saved, title = starting_run(
         runs, model, "so the agreement is optimistic", pitch=pitch
     )
-    body = probed_body(standard, runs, run)
+    run, body = probed_body(standard, runs, run)
     found = answer.compare(
         run,
         start,

@@ -130,7 +130,7 @@ def learn(
     """
     same = "so that its estimates are made anew: no touch counts twice"
     run, start, _, title = starting_run(runs, model, same, pitch=pitch)
-    body = probed_body(standard, runs, run)
+    run, body = probed_body(standard, runs, run)
     other = read_run(second) if isinstance(second, str | Path) else second
     added = named_effects(add, start.effects, run)
     if added:  # a time constant at a point of its grid leaves a law that is none

@@ -1,7 +1,7 @@
 """Standards: read, calibrated, drawn behind their touches; what visits to one say of a task."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +14,7 @@ from matstd.artefact.certify import (
     Allowed,
     CalibrationFit,
     check_places,
+    farthest_off,
     fit_calibration,
     merged_orientations,
     read_cmm_points,
@@ -320,8 +321,11 @@ def _check_visits(names: list[str], runs: list[Run]) -> None:
             )
 
 
-def probed_body(probed: Probed, runs: Runs, run: Run) -> Array | None:
-    """Triangles of what was probed, artefact frame, (T, 3, 3), mm; None where it is not known.
+def probed_body(probed: Probed, runs: Runs, run: Run) -> tuple[Run, Array | None]:
+    """The run, and triangles of what was probed, artefact frame, (T, 3, 3), mm; None for unknown.
+
+    A run without a stamp is compared with the features of the standard, and remarks that nothing
+    else ties them together.
 
     Args:
         probed: As the user states it; without it the file of the standard beside the run.
@@ -332,16 +336,23 @@ def probed_body(probed: Probed, runs: Runs, run: Run) -> Array | None:
     """
     if probed is None:
         standard = _beside(listed(runs), run)
-        return None if standard is None else _triangles(standard)
+        return run, None if standard is None else _triangles(standard)
     if not isinstance(probed, Standard) and Path(probed).suffix.lower() != ".toml":
-        return thinned(drawing_triangles(Path(probed)))
+        return run, thinned(drawing_triangles(Path(probed)))
     standard = probed if isinstance(probed, Standard) else read_standard(probed)
+    name = standard.name if isinstance(probed, Standard) else probed
     if run.standard and standard.stamp != run.standard:
-        name = standard.name if isinstance(probed, Standard) else probed
         raise DesignError(
             f"{name}: standard {standard.stamp}, expected that of the run, {run.standard}"
         )
-    return _triangles(standard)
+    if not run.standard and run.touches.instrument.is_ball_on_standard:
+        off = farthest_off(standard, run.touches, name)
+        said = (
+            f"the run has no stamp, so nothing ties it to standard {standard.stamp}: its "
+            f"{len(run)} touches lie on the features that they name, within {off / UM:.0f} µm"
+        )
+        run = replace(run, remarks=(*run.remarks, said))
+    return run, _triangles(standard)
 
 
 def _triangles(standard: Standard) -> Array:

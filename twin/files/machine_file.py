@@ -120,7 +120,8 @@ def read_machine(path: str | Path, named_in: str | Path | None = None) -> Chain:
     chain = tables.made(path)
     if slips := [BadFile.of(path, slip) for slip in machine_slips(chain)]:
         raise BadFile.several(slips)
-    questions = (BadFile.of(path, question) for question in machine_questions(chain))
+    is_placed = "workpiece" in tables.model_fields_set
+    questions = (BadFile.of(path, one) for one in machine_questions(chain, is_placed))
     refuse_unit_slips(tables, path, questions, tables.confirmed)
     known, drawings = ["f", *(link.name for link in chain.links)], tables.bodies or {}
     for name in drawings:

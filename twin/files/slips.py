@@ -152,10 +152,14 @@ def machine_slips(chain: Chain) -> Iterator[BadValue]:
                 yield from _pivot(chain, link)
 
 
-def machine_questions(chain: Chain) -> Iterator[BadValue]:
-    """Values that a mistake explains, and few machines have: the file may confirm them."""
+def machine_questions(chain: Chain, is_placed: bool = True) -> Iterator[BadValue]:
+    """Values that a mistake explains, and few machines have: the file may confirm them.
+
+    Args:
+        is_placed: Whether the place of the table is stated.
+    """
     if len(chain.linear_axes) == 3:
-        rules = (_small_travel, _far_table, _table_off_centre)
+        rules = (_small_travel, *((_far_table, _table_off_centre) if is_placed else ()))
         # what a rule finds explains what the later ones would
         yield from next(filter(None, (list(rule(chain)) for rule in rules)), [])
 
