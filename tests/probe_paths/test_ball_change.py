@@ -2,17 +2,18 @@
 
 from dataclasses import replace
 from datetime import timedelta
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
+from programs import as_read, left_log, ran
 
 from matstd.artefact.body import write_standard
 from matstd.artefact.tool import home_readings
 from matstd.cli import main
 from matstd.probe_paths.campaign import VirtualMachine, ball_changes, check_changes, check_moves
-from matstd.probe_paths.campaign.virtual_run import run_programs
-from matstd.probe_paths.control import interpret, read_log
+from matstd.probe_paths.control import read_log
 from matstd.probe_paths.emit import make_ball
 from matstd.probe_paths.locate.beside import plan_ball
 from matstd.report.words import ball_lines
@@ -28,23 +29,13 @@ def ball(plan):
 
 @pytest.fixture(scope="module")
 def program(ball, chain):
-    made = make_ball(ball)
-    (one,) = made.programs
-    return interpret(one.text.encode("ascii"), Path(one.file), made.masks.get, chain)
+    return as_read(make_ball(ball), chain)
 
 
 @pytest.fixture(scope="module")
 def logged(program, small, chain):
     """The log that the program leaves on a machine, so many hours later."""
-
-    def log(hours=0.0, **machine):
-        virtual = VirtualMachine(chain, **machine)
-        virtual = replace(virtual, begin=virtual.begin + timedelta(hours=hours))
-        run = run_programs([program], small, virtual, np.random.default_rng(0))[0]
-        run.check_done()
-        return "".join(run.log.values())
-
-    return log
+    return partial(left_log, program, small, chain)
 
 
 @pytest.fixture(scope="module")
@@ -138,7 +129,7 @@ def test_no_ball_no_program(plan):
 def test_evaluate_reports_the_change_and_refuses_beyond_the_limit(
     logged, programs, read, small, chain, golden, tmp_path, capsys
 ):
-    run = run_programs(read[:1], small, VirtualMachine(chain), np.random.default_rng(0))[0]
+    run = ran(read[0], small, VirtualMachine(chain))
     folder = tmp_path
     for name, text in run.log.items():
         (folder / name).write_text(text, encoding="ascii")

@@ -2,17 +2,16 @@
 
 import re
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
+from programs import as_read, parts_of, ran
 
 from matstd.artefact.reach import Workshop
 from matstd.artefact.tool import Probe
 from matstd.probe_paths.campaign import check_moves, evaluate
 from matstd.probe_paths.campaign.collisions import SMALLEST_GAP
-from matstd.probe_paths.campaign.virtual_run import run_programs
-from matstd.probe_paths.control import Move, interpret, read_log
+from matstd.probe_paths.control import Move
 from matstd.probe_paths.plan import ToolClearance
 from matstd.probe_paths.plan.clearance import Stage
 from matstd.twin.errors import BadFile
@@ -28,10 +27,6 @@ HAND = 0.02
 def test_programs_as_made_are_free(read, small, chain):
     for program in read:
         check_moves(program, small, chain)
-
-
-def read_again(text, programs, chain):
-    return interpret(text.encode("ascii"), Path("MS_A_1.H"), programs.masks.get, chain)
 
 
 def sideways(program, chain, up, q_to):
@@ -73,7 +68,7 @@ def test_a_touch_begun_at_the_wrong_place_is_found(programs, chain, small):
     for word, sign, value in touches[:8]:
         other = f"X{'-' if sign == '+' else '+'}{value}"
         text = first.replace(f"{word} ", f"{other} ")
-        read = read_again(text, programs, chain)
+        read = as_read(programs, chain, text=text)
         try:
             check_moves(read, small, chain)
         except BadFile as error:
@@ -88,7 +83,7 @@ def test_a_start_inside_the_standard_is_found(programs, chain, small):
     word = re.search(r"L (Z\+(\S+)) R0 F2000", first)
     deeper = f"Z{float(word[2]) - 12.0:+.4f}"
     text = first.replace(word[1], deeper)
-    read = read_again(text, programs, chain)
+    read = as_read(programs, chain, text=text)
     with pytest.raises(BadFile, match="a gap of"):
         check_moves(read, small, chain)
 
@@ -102,10 +97,8 @@ def test_a_feature_number_mixed_up_is_found_when_the_log_is_evaluated(
     lines = first.split("\r\n")
     at = [i for i, line in enumerate(lines) if "Q1622" in line][3]
     lines[at] = lines[at].replace(f"+{numbers[3]}", f"+{other}")
-    read = read_again("\r\n".join(lines), programs, chain)
-    run = run_programs([read], small, perfect, np.random.default_rng(0))[0]
-    part = read_log("MS_A_1.TXT", chain.rotary_axes, run.log["MS_A_1.TXT"])[0]
-    found = evaluate([part], small, chain, UM)
+    read = as_read(programs, chain, text="\r\n".join(lines))
+    found = evaluate(parts_of([ran(read, small, perfect)], chain), small, chain, UM)
     assert len(found) == len(read.touches) - 1
     assert any("touch 4 with" in remark for remark in found.remarks)
 

@@ -6,6 +6,7 @@ import shutil
 
 import numpy as np
 import pytest
+from programs import stand_in
 
 from matstd.artefact.body import write_standard
 from matstd.artefact.tool import Probe
@@ -49,24 +50,18 @@ def design(golden, small, tmp_path_factory):
     return out
 
 
+def as_user(folder, monkeypatch, script):
+    """A command that is called like the control, started by an ordinary user."""
+    stand_in(folder, monkeypatch, script)
+    monkeypatch.setattr(session_module.os, "geteuid", lambda: 12345)
+
+
 def refused(capsys, *arguments):
     """The one line of a refusal."""
     assert main(["control-test", *map(str, arguments)]) == 2
     error = capsys.readouterr().err
     assert error.count("\n") == 1
     return error
-
-
-def stand_in(folder, monkeypatch, script):
-    """A command that is called like the control."""
-    folder.mkdir()
-    for name in ("linuxcnc", "halcmd", "halrun"):
-        file = folder / name
-        file.write_text(f"#!/bin/sh\n{script if name == 'linuxcnc' else 'exit 0'}\n")
-        file.chmod(0o755)
-    monkeypatch.setenv("PATH", f"{folder}:{os.environ['PATH']}")
-    monkeypatch.setattr(session_module, "LOCK", folder / "lock")
-    monkeypatch.setattr(session_module.os, "geteuid", lambda: 12345)
 
 
 def test_a_control_that_is_not_installed_is_one_line(design, capsys, monkeypatch, tmp_path):
@@ -79,7 +74,7 @@ def test_a_control_that_is_not_installed_is_one_line(design, capsys, monkeypatch
 
 def test_a_control_that_dies_leaves_its_log_and_one_line(design, capsys, monkeypatch, tmp_path):
     script = "echo MATSTD LOG 1 > MS_A_1.TXT; echo segmentation error >&2; kill -9 $$"
-    stand_in(tmp_path / "bin", monkeypatch, script)
+    as_user(tmp_path / "bin", monkeypatch, script)
     out = tmp_path / "out"
     error = refused(capsys, design, "-o", out, "--touches", 10)
     expected = f"LinuxCNC died in MS_A_1.ngc: segmentation error; what was logged is kept in {out}"
@@ -89,7 +84,7 @@ def test_a_control_that_dies_leaves_its_log_and_one_line(design, capsys, monkeyp
 
 
 def test_no_file_is_overwritten_without_being_asked(design, capsys, monkeypatch, tmp_path):
-    stand_in(tmp_path / "bin", monkeypatch, "exit 0")
+    as_user(tmp_path / "bin", monkeypatch, "exit 0")
     (tmp_path / "out").mkdir()
     (tmp_path / "out" / "mine").write_text("x")
     assert "already exists" in refused(capsys, design, "-o", tmp_path / "out")
@@ -105,12 +100,12 @@ def test_no_file_is_overwritten_without_being_asked(design, capsys, monkeypatch,
     ],
 )
 def test_bad_options_are_one_line(options, reason, design, capsys, monkeypatch, tmp_path):
-    stand_in(tmp_path / "bin", monkeypatch, "exit 0")
+    as_user(tmp_path / "bin", monkeypatch, "exit 0")
     assert reason in refused(capsys, design, "-o", tmp_path / "out", *options)
 
 
 def test_a_folder_without_programs_is_one_line(capsys, monkeypatch, tmp_path, design):
-    stand_in(tmp_path / "bin", monkeypatch, "exit 0")
+    as_user(tmp_path / "bin", monkeypatch, "exit 0")
     bare = tmp_path / "bare"
     shutil.copytree(design, bare)
     shutil.rmtree(bare / "programs")

@@ -1,17 +1,16 @@
 """A calibrated ball on the table beside the standard: kept clear of, touched by one program."""
 
 from dataclasses import replace
-from datetime import timedelta
 from pathlib import Path
 
 import numpy as np
 import pytest
+from programs import as_read, left_log
 
 from matstd.artefact.brief import read_project
 from matstd.artefact.reach import DatumBall, Workshop
-from matstd.probe_paths.campaign import VirtualMachine, ball_changes, check_moves, effective_radii
-from matstd.probe_paths.campaign.virtual_run import run_programs
-from matstd.probe_paths.control import Move, interpret, read_log
+from matstd.probe_paths.campaign import ball_changes, check_moves, effective_radii
+from matstd.probe_paths.control import Move, read_log
 from matstd.probe_paths.emit import make_ball, make_programs
 from matstd.probe_paths.linuxcnc import shortened
 from matstd.probe_paths.locate import planned_again
@@ -38,20 +37,16 @@ def made(beside):
 
 @pytest.fixture(scope="module")
 def program(made, chain):
-    (one,) = made.programs
-    return interpret(one.text.encode("ascii"), Path(one.file), made.masks.get, chain)
+    return as_read(made, chain)
 
 
 @pytest.fixture(scope="module")
 def logged(program, small, chain):
     """The log on a machine, so many hours later."""
 
-    def log(hours=0.0, **machine):
-        virtual = VirtualMachine(chain, **machine)
-        virtual = replace(virtual, begin=virtual.begin + timedelta(hours=hours))
-        run = run_programs([program], small, virtual, np.random.default_rng(0))[0]
-        run.check_done()
-        (part,) = read_log("A.TXT", chain.rotary_axes, "".join(run.log.values()))
+    def log(*hours, **machine):
+        text = left_log(program, small, chain, *hours, **machine)
+        (part,) = read_log("A.TXT", chain.rotary_axes, text)
         return part
 
     return log
@@ -94,8 +89,7 @@ def test_it_does_not_mind_where_the_standard_stands(logged, small, chain):
 @pytest.fixture(scope="module")
 def measuring(beside, chain):
     made = make_programs(beside)
-    (one,) = made.programs
-    return interpret(one.text.encode("ascii"), Path(one.file), made.masks.get, chain), one.text
+    return as_read(made, chain), made.programs[0].text
 
 
 def test_programs_that_measure_keep_clear_of_it(measuring, small, chain):

@@ -6,12 +6,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from programs import as_read, parts_of, ran
 
 from matstd.artefact.body import write_standard
 from matstd.cli import main
 from matstd.probe_paths.campaign import VirtualMachine, check_moves, read_heights
-from matstd.probe_paths.campaign.virtual_run import run_programs
-from matstd.probe_paths.control import ProbeStep, interpret, read_log
+from matstd.probe_paths.control import ProbeStep
 from matstd.probe_paths.emit import make_first
 from matstd.probe_paths.language import read_dialect
 from matstd.probe_paths.locate.beside import plan_ball
@@ -33,8 +33,7 @@ def reads(made, small, chain):
     """Reads a text as the program, and looks at its moves."""
 
     def read(text):
-        path = Path(made.programs[0].file)
-        program = interpret(text.encode("ascii"), path, made.masks.get, chain)
+        program = as_read(made, chain, text=text)
         check_moves(program, small, chain)
         return program
 
@@ -102,9 +101,9 @@ def test_what_is_wrong_is_refused(made, reads, old, new, expected):
 @pytest.mark.parametrize("meaning", ["gauge", "tip"])
 def test_its_log_shows_what_z_the_control_returns(program, small, chain, meaning):
     machine = VirtualMachine(chain, dialect=replace(read_dialect("itnc530"), result_height=meaning))
-    run = run_programs([program], small, machine, np.random.default_rng(0))[0]
+    run = ran(program, small, machine)
     run.check_done()
-    (part,) = read_log("MS_A_COM.TXT", chain.rotary_axes, "".join(run.log.values()))
+    (part,) = parts_of([run], chain)
     assert part.is_complete
     assert not part.is_measuring
     assert (part.radius, part.tool_length) == (3.0, 163.0)
@@ -115,7 +114,7 @@ def test_its_log_shows_what_z_the_control_returns(program, small, chain, meaning
 
 def test_a_touch_in_the_air_that_meets_something_stops_it(program, small, chain):
     higher = VirtualMachine(chain, setup_error=pose(np.eye(3), np.array([0.0, 0.0, 22.0])))
-    run = run_programs([program], small, higher, np.random.default_rng(0))[0]
+    run = ran(program, small, higher)
     assert run.log == {}
     with pytest.raises(NotReachable, match="the touch in the air meets SPH1"):
         run.check_done()

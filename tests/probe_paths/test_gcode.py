@@ -2,15 +2,15 @@
 
 import re
 from datetime import datetime
-from pathlib import Path
 
 import numpy as np
 import pytest
 import rs274
+from programs import as_read, parts_of
 
 from matstd.probe_paths.campaign import VirtualMachine, check_moves, evaluate
 from matstd.probe_paths.campaign.virtual_run import run_programs
-from matstd.probe_paths.control import Halt, Move, Print, ProbeStep, interpret, read_log
+from matstd.probe_paths.control import Halt, Move, Print, ProbeStep, read_log
 from matstd.probe_paths.emit import make_dry_run
 from matstd.probe_paths.language import Touch, read_blocks, read_dialect
 from matstd.probe_paths.language.gcode import GCODE
@@ -21,21 +21,10 @@ LAST_DIGIT = 2e-4
 NUMBER = re.compile(r"[+-]\d+\.\d+")
 
 
-@pytest.fixture(scope="module")
-def made(golden):
-    return golden.programs("linuxcnc")
-
-
-@pytest.fixture(scope="module")
-def twins(made, chain):
-    """Every golden program for LinuxCNC, read from its text."""
-    return [interpret(p.text.encode(), Path(p.file), {}.get, chain) for p in made.programs]
-
-
-def test_programs_are_those_of_the_golden_files(made, golden):
-    assert made.masks == {}
-    assert {p.name for p in golden.LINUXCNC.iterdir()} == {p.file for p in made.programs}
-    for program in made.programs:
+def test_programs_are_those_of_the_golden_files(for_linuxcnc, golden):
+    assert for_linuxcnc.masks == {}
+    assert {p.name for p in golden.LINUXCNC.iterdir()} == {p.file for p in for_linuxcnc.programs}
+    for program in for_linuxcnc.programs:
         text = (golden.LINUXCNC / program.file).read_bytes().decode("ascii")
         assert NUMBER.sub("#", text) == NUMBER.sub("#", program.text)
         ours, golden_numbers = (
@@ -60,15 +49,15 @@ def test_steps_are_those_of_the_itnc(twins, read):
                 assert a.slow_feed * 60.0 == 12.0
 
 
-def test_the_collision_check_is_the_same(twins, small, chain, made):
+def test_the_collision_check_is_the_same(twins, small, chain, for_linuxcnc):
     for program in twins:
         check_moves(program, small, chain)
-    text = made.programs[0].text
+    text = for_linuxcnc.programs[0].text
     lines = text.splitlines()
     place = next(i for i, line in enumerate(lines) if line.startswith("G1 Z"))
     for i in (place, place + 3):  # to the start of the touch, and back to it
         lines[i] = re.sub(r"Z([+-][\d.]+)", lambda m: f"Z{float(m[1]) - 6.0:+.4f}", lines[i])
-    dipped = interpret("\n".join([*lines, ""]).encode(), Path("MS_A_1.ngc"), {}.get, chain)
+    dipped = as_read(for_linuxcnc, chain, text="\n".join([*lines, ""]))
     with pytest.raises(BadFile, match=r"line 2\d\d: found a gap of"):
         check_moves(dipped, small, chain)
 
@@ -76,7 +65,7 @@ def test_the_collision_check_is_the_same(twins, small, chain, made):
 @pytest.fixture(scope="module")
 def parts(twins, small, chain):
     runs = run_programs(twins, small, VirtualMachine(chain), np.random.default_rng(0))
-    return [p for r in runs for name, t in r.log.items() for p in read_log(name, "CB", t)]
+    return parts_of(runs, chain)
 
 
 def test_logs_evaluate_to_nothing_on_a_perfect_machine(parts, small, chain, plan):
@@ -117,10 +106,10 @@ END T6.000000
     assert {a: v.tolist() for a, v in part.side.items()} == {"C": [-1.0], "B": [-1.0]}
 
 
-def test_two_touches_take_longer_than_one(made, programs, plan):
+def test_two_touches_take_longer_than_one(for_linuxcnc, programs, plan):
     """By hand: 0.3 mm back at 250 mm/min and 0.3 mm at 12 mm/min."""
     longer = 0.3 * 60.0 * (1.0 / 250.0 + 1.0 / 12.0)
-    assert abs(made.duration - programs.duration - len(plan) * longer) < 1e-6
+    assert abs(for_linuxcnc.duration - programs.duration - len(plan) * longer) < 1e-6
 
 
 def changed(text, old, new):
@@ -162,32 +151,32 @@ def changed(text, old, new):
         ("(BEGIN PGM MS_A_1 MM)", "(BEGIN PGM MS_A_2 MM)", r"MS_A_1"),
     ],
 )
-def test_what_must_not_run_is_one_line(old, new, reason, made, chain):
-    text = changed(made.programs[0].text, old, new)
+def test_what_must_not_run_is_one_line(old, new, reason, for_linuxcnc, chain):
+    text = changed(for_linuxcnc.programs[0].text, old, new)
     with pytest.raises(BadFile, match=reason) as refusal:
-        interpret(text.encode(), Path("MS_A_1.ngc"), {}.get, chain)
+        as_read(for_linuxcnc, chain, text=text)
     assert "\n" not in str(refusal.value)
 
 
 @pytest.mark.parametrize("step", [5, pytest.param(1, marks=pytest.mark.slow)])
-def test_every_line_that_is_lost_is_noticed_or_a_remark(made, chain, step):
+def test_every_line_that_is_lost_is_noticed_or_a_remark(for_linuxcnc, chain, step):
     """A touch less, a status less, half a test: no line of the code can go without a word."""
-    lines = made.programs[1].text.splitlines()
+
+    def is_taken(lines):
+        try:
+            as_read(for_linuxcnc, chain, 1, "\n".join([*lines, ""]))
+        except BadFile:
+            return False
+        return True
+
+    lines = for_linuxcnc.programs[1].text.splitlines()
     code = [i for i, line in enumerate(lines) if not line.startswith(";")][::step]
-    silent = [lines[i] for i in code if _is_taken(lines[:i] + lines[i + 1 :], chain)]
+    silent = [lines[i] for i in code if is_taken(lines[:i] + lines[i + 1 :])]
     # these the control or the operator does not need, or a move or touch follows all the same; B
     # and C stand at zero where their zero is tested, and the number before is zero too
     for line in silent:
         assert re.match(r"M66 E0 L0$|M0$|G0 |G53 G0 Z|#1614 = #<_abs_[bc]>", line), line
     assert sum(line.startswith("#1614") for line in silent) <= 2
-
-
-def _is_taken(lines, chain):
-    try:
-        interpret("\n".join([*lines, ""]).encode(), Path("MS_A_2.ngc"), {}.get, chain)
-    except BadFile:
-        return False
-    return True
 
 
 def test_words_have_one_spelling_at_both_ends():
@@ -210,9 +199,9 @@ def test_words_have_one_spelling_at_both_ends():
 
 @rs274.is_there
 @pytest.mark.parametrize("number", [0, 1, 2])
-def test_the_interpreter_of_linuxcnc_takes_every_block(number, made, tmp_path):
+def test_the_interpreter_of_linuxcnc_takes_every_block(number, for_linuxcnc, tmp_path):
     """Every touch is taken as met, so that no block is left out; a bad block is not taken."""
-    program = made.programs[number]
+    program = for_linuxcnc.programs[number]
     met = rs274.all_met(program.text)
     done = rs274.interpreted(met, tmp_path)
     assert "PROGRAM_END" in done
@@ -249,10 +238,10 @@ def test_the_interpreter_of_linuxcnc_takes_every_block(number, made, tmp_path):
     ],
 )
 def test_linuxcnc_stops_before_it_goes_down_where_it_is_not_set_up_so(
-    made, tmp_path, offsets, tool, alarm
+    for_linuxcnc, tmp_path, offsets, tool, alarm
 ):
     """Its own interpreter, with what an earlier job left in force; none of G55 and G92 matters."""
-    text = rs274.all_met(made.programs[0].text)
+    text = rs274.all_met(for_linuxcnc.programs[0].text)
     done = rs274.interpreted(text, tmp_path, offsets, tool)
     if alarm is None:  # the program itself selects G54 and cancels G92
         assert "PROGRAM_END" in done
@@ -268,9 +257,9 @@ def test_linuxcnc_stops_before_it_goes_down_where_it_is_not_set_up_so(
 
 
 @rs274.is_there
-def test_linuxcnc_stops_where_a_turn_ended_elsewhere(made, tmp_path):
+def test_linuxcnc_stops_where_a_turn_ended_elsewhere(for_linuxcnc, tmp_path):
     """As a wrapped rotary axis would: C-100 is a turn to 100 degrees."""
-    text = rs274.all_met(made.programs[0].text)
+    text = rs274.all_met(for_linuxcnc.programs[0].text)
     assert "\nG1 B+20.0000 C-100.0000 F1000" in text
     wrapped = text.replace("\nG1 B+20.0000 C-100.0000 F", "\nG1 B+20.0000 C+100.0000 F", 1)
     done = rs274.interpreted(wrapped, tmp_path)
@@ -293,9 +282,9 @@ def fed_turns(text, folder):
 
 
 @rs274.is_there
-def test_fed_turns_move_rotary_axes_alone(made, plan, tmp_path):
+def test_fed_turns_move_rotary_axes_alone(for_linuxcnc, plan, tmp_path):
     """F is then degrees a minute, on LinuxCNC as on the iTNC: 1000 of them, whatever the way."""
-    found = {p.name: rs274.all_met(p.text) for p in made.programs}
+    found = {p.name: rs274.all_met(p.text) for p in for_linuxcnc.programs}
     dry = make_dry_run(plan, 100.0, read_dialect("linuxcnc"))
     found |= {p.name: rs274.all_met(p.text) for p in dry.programs}
     turns = [fed_turns(text, tmp_path) for text in found.values()]

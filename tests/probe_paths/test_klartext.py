@@ -78,14 +78,6 @@ def test_every_block_of_the_vocabulary_is_one_that_the_parser_knows():
     assert {b.kind for b in blocks} == set(Kind) - {Kind.TCPM_ON}
 
 
-def test_the_form_in_which_a_control_saves_is_read_alike():
-    ours = b"0 BEGIN PGM A MM\r\n1 L X+1.0000 Y-2.5000 R0 FMAX\r\n2 END PGM A MM\r\n"
-    saved = b"0  BEGIN PGM A MM \r\n1  L  X+1.0000  Y-2.5000 R0 FMAX\r\n2  END PGM A MM \r\n"
-    without_numbers = b"BEGIN PGM A MM\nL X+1.0000 Y-2.5000 R0 FMAX\nEND PGM A MM\n"
-    words = [[b.words for b in read_blocks(t, "A.H")] for t in (ours, saved, without_numbers)]
-    assert words[0] == words[1] == words[2]
-
-
 @pytest.mark.parametrize("word", DISTANCE_WORDS)
 @pytest.mark.parametrize("name", CYCLE_NAMES)
 def test_every_dialect_of_cycle_4_is_read_back(word, name):

@@ -2,7 +2,6 @@
 
 import ast
 import json
-import os
 import socket
 import sys
 import threading
@@ -11,11 +10,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from programs import all_read, ran, stand_in
 
 from matstd.artefact.tool import Probe
 from matstd.probe_paths.campaign import VirtualMachine
-from matstd.probe_paths.campaign.virtual_run import run_programs
-from matstd.probe_paths.control import ProbeStep, interpret
+from matstd.probe_paths.control import ProbeStep
 from matstd.probe_paths.emit import make_programs
 from matstd.probe_paths.language import read_dialect
 from matstd.probe_paths.linuxcnc import installed, shortened
@@ -31,16 +30,6 @@ from matstd.twin.units import DEG, NM, UM
 
 LATCH = 0.2 * UM
 """12 mm/min in one period of 1 ms."""
-
-
-@pytest.fixture(scope="module")
-def made(golden):
-    return golden.programs("linuxcnc")
-
-
-@pytest.fixture(scope="module")
-def twins(made, chain):
-    return [interpret(p.text.encode(), Path(p.file), {}.get, chain) for p in made.programs]
 
 
 @pytest.fixture(scope="module")
@@ -109,8 +98,7 @@ def test_all_touches_of_a_program_again_are_the_same_program(golden, programs, r
 @pytest.mark.parametrize("count", [1, 2, 7, 30])
 def test_some_touches_are_those_of_the_whole(count, read, small, chain):
     made = make_programs(shortened(read, small, chain, count), read_dialect("linuxcnc"))
-    back = [interpret(p.text.encode(), Path(p.file), {}.get, chain) for p in made.programs]
-    touches = [t for p in back for t in p.touches]
+    touches = [t for p in all_read(made, chain) for t in p.touches]
     assert len(touches) == count
     whole = [t for p in read for t in p.touches]
     for touch in touches:
@@ -135,7 +123,7 @@ def joints(chain, q):
 def test_the_contact_is_that_of_the_virtual_probing(twins, small, chain, crooked):
     """From the start of a touch and from 0.3 mm before its contact, to a nanometre."""
     contact = TwinContact(twins, small, crooked, np.random.default_rng(0))
-    run = run_programs([twins[0]], small, crooked, np.random.default_rng(0))[0]
+    run = ran(twins[0], small, crooked)
     linear = [chain.axis_index(a) for a in "XYZ"]
     for touch, q in zip(twins[0].touches[:8], run.q, strict=False):
         way = touch.direction[linear].tolist()
@@ -230,20 +218,10 @@ def test_the_twin_answers_over_a_socket(twins, small, chain, crooked, tmp_path):
 # --- sessions that end badly, with a stand-in for the control --------------------------------
 
 
-def stand_in(folder, monkeypatch, script):
-    """A command `linuxcnc` that does what the script says, and the others that are looked for."""
-    for name in ("linuxcnc", "halcmd", "halrun"):
-        file = folder / name
-        file.write_text(f"#!/bin/sh\n{script if name == 'linuxcnc' else 'exit 0'}\n")
-        file.chmod(0o755)
-    monkeypatch.setenv("PATH", f"{folder}:{os.environ['PATH']}")
-    monkeypatch.setattr(session_module, "LOCK", folder / "lock")
-
-
-def started(made, twins, small, machine, folder):
+def started(for_linuxcnc, twins, small, machine, folder):
     files = machine_files(machine.chain, Probe(), read_dialect("linuxcnc"), str(folder / "probe"))
     contact = TwinContact(twins, small, machine, np.random.default_rng(0))
-    return run_on_linuxcnc(made.programs, files, contact, folder / "probe")
+    return run_on_linuxcnc(for_linuxcnc.programs, files, contact, folder / "probe")
 
 
 @pytest.mark.parametrize(
@@ -270,24 +248,22 @@ def started(made, twins, small, machine, folder):
     ],
 )
 def test_what_stopped_it_is_one_line(
-    script, outcome, made, twins, small, crooked, tmp_path, monkeypatch
+    script, outcome, for_linuxcnc, twins, small, crooked, tmp_path, monkeypatch
 ):
     bin_folder, folder = tmp_path / "bin", tmp_path / "machine"
-    bin_folder.mkdir()
     folder.mkdir()
     stand_in(bin_folder, monkeypatch, script)
-    assert started(made, twins, small, crooked, folder).outcome == outcome
+    assert started(for_linuxcnc, twins, small, crooked, folder).outcome == outcome
 
 
-def test_a_control_that_hangs_is_ended(made, twins, small, crooked, tmp_path, monkeypatch):
+def test_a_control_that_hangs_is_ended(for_linuxcnc, twins, small, crooked, tmp_path, monkeypatch):
     bin_folder, folder = tmp_path / "bin", tmp_path / "machine"
-    bin_folder.mkdir()
     folder.mkdir()
     stand_in(bin_folder, monkeypatch, f"touch {bin_folder}/lock; sleep 1000")
     files = machine_files(crooked.chain, Probe(), read_dialect("linuxcnc"), str(folder / "probe"))
     contact = TwinContact(twins, small, crooked, np.random.default_rng(0))
     contact.failure = "what the twin refused"
-    session = run_on_linuxcnc(made.programs, files, contact, folder / "probe")
+    session = run_on_linuxcnc(for_linuxcnc.programs, files, contact, folder / "probe")
     assert session.outcome == "what the twin refused"
     assert not (bin_folder / "lock").exists()
 

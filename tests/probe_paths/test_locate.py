@@ -1,20 +1,18 @@
 """The search for a standard: always something under the ball, nothing hit, and the place found."""
 
 import re
-import shutil
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
+from programs import all_read, as_read, ran
 
 from matstd.api.replanning import feeds_of
-from matstd.artefact.body import Base, contact, write_standard
+from matstd.artefact.body import Base, contact
 from matstd.artefact.tool import Probe
 from matstd.cli import main
 from matstd.probe_paths.campaign import VirtualMachine, ball_centres, check_moves, simulate_search
-from matstd.probe_paths.campaign.virtual_run import run_programs
-from matstd.probe_paths.control import interpret, read_log, read_program
+from matstd.probe_paths.control import read_log, read_program
 from matstd.probe_paths.emit import Feeds, make_programs, make_search
 from matstd.probe_paths.locate import Spread, find_standard, plan_search
 from matstd.probe_paths.locate.relief import Relief
@@ -23,8 +21,6 @@ from matstd.twin.errors import BadFile, NotEnoughData, NotReachable
 from matstd.twin.frames import fixed_xyz, pose
 from matstd.twin.record import Setup
 from matstd.twin.units import DEG, UM
-
-MACHINE = Path(__file__).parents[2] / "examples" / "hsm600u-machine.toml"
 
 SPREAD = Spread(6.0, 1.5 * DEG)
 """Small, so that the first round of places is."""
@@ -38,8 +34,7 @@ def search(small, chain, golden):
 
 @pytest.fixture(scope="module")
 def program(search, chain):
-    (made,) = search.programs
-    return interpret(made.text.encode("ascii"), Path(made.file), search.masks.get, chain)
+    return as_read(search, chain)
 
 
 def placed(theta):
@@ -54,7 +49,7 @@ def test_at_the_ends_of_the_spread_every_touch_meets_something_and_nothing_else_
 ):
     beside = placed(theta)
     machine = VirtualMachine(chain, setup_error=beside)
-    (run,) = run_programs([program], small, machine, np.random.default_rng(0))
+    run = ran(program, small, machine)
     run.check_done()
     stands = Setup("a", golden.setup().T_table_artefact @ beside)
     room = ToolClearance(chain, small, stands, Probe(), program.heading.workshop)
@@ -148,17 +143,7 @@ def test_a_search_on_flat_places_alone_is_refused(golden, chain):
 def test_only_a_search_may_go_far_and_only_down(old, new, expected, search, chain):
     text = search.programs[0].text.replace(old, new)
     with pytest.raises(BadFile, match=expected):
-        interpret(text.encode("ascii"), Path("MS_A_LOC.H"), search.masks.get, chain)
-
-
-@pytest.fixture(scope="module")
-def design(golden, tmp_path_factory):
-    """A folder as a design leaves it, of the small standard; the example's machine is its own."""
-    folder = tmp_path_factory.mktemp("design")
-    write_standard(folder / "standard.toml", golden.standard())
-    shutil.copyfile(MACHINE, folder / "machine.toml")
-    golden.programs().write(folder / "programs")
-    return folder
+        as_read(search, chain, text=text)
 
 
 @pytest.mark.slow
@@ -186,12 +171,7 @@ def test_programs_are_planned_again_where_the_standard_stands(
 
 def test_programs_keep_their_feeds_when_planned_again(plan, chain):
     feeds = Feeds(probing=120.0, approach=1500.0, turning=700.0)
-    made = make_programs(plan, feeds=feeds)
-    read = [
-        interpret(p.text.encode("ascii"), Path(p.file), made.masks.get, chain)
-        for p in made.programs
-    ]
-    assert feeds_of(read, chain) == feeds
+    assert feeds_of(all_read(make_programs(plan, feeds=feeds), chain), chain) == feeds
 
 
 def test_a_log_of_another_standard_is_refused(log, design, tmp_path, capsys):

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from programs import parts_of, ran
 
 from matstd.artefact.body import Known
 from matstd.probe_paths.campaign import VirtualMachine, evaluate
@@ -25,24 +26,20 @@ PRINTED = 1e-6
 """Six decimals of a log, mm; a deviation adds three of them and those of a foot point."""
 
 U = 1.0 * UM
+STANDS = pose(rotation(np.array([1e-4, -2e-4, 5e-4])), np.array([0.08, -0.05, 0.03]))
+"""Of the standard, beside its place."""
 
 
 @pytest.fixture(scope="module")
 def runs(read, small, chain):
     """The golden programs on a machine with noise that stands beside its place."""
-    stands = pose(rotation(np.array([1e-4, -2e-4, 5e-4])), np.array([0.08, -0.05, 0.03]))
-    machine = VirtualMachine(chain, setup_error=stands, noise=0.5 * UM)
+    machine = VirtualMachine(chain, setup_error=STANDS, noise=0.5 * UM)
     return run_programs(read, small, machine, np.random.default_rng(2))
 
 
 @pytest.fixture(scope="module")
 def parts(runs, chain):
-    return [
-        part
-        for run in runs
-        for name, text in run.log.items()
-        for part in read_log(name, chain.rotary_axes, text)
-    ]
+    return parts_of(runs, chain)
 
 
 def test_a_mask_is_filled_in_as_the_control_does():
@@ -79,17 +76,11 @@ def test_z_is_that_of_the_gauge_point_and_x_y_those_of_the_ball(parts, runs, cha
 
 
 def test_the_other_meaning_of_z_is_a_dialect(read, small, chain, runs):
-    machine = VirtualMachine(
-        chain,
-        setup_error=pose(rotation(np.array([1e-4, -2e-4, 5e-4])), np.array([0.08, -0.05, 0.03])),
-        noise=0.5 * UM,
-        dialect=Dialect(result_height="tip"),
-    )
-    run = run_programs(read[:1], small, machine, np.random.default_rng(2))[0]
-    part = read_log("L", chain.rotary_axes, run.log["MS_A_1.TXT"])[0]
-    gauge = read_log("L", chain.rotary_axes, runs[0].log["MS_A_1.TXT"])[0]
+    words = Dialect(result_height="tip")
+    machine = VirtualMachine(chain, setup_error=STANDS, noise=0.5 * UM, dialect=words)
+    part, gauge = parts_of([ran(read[0], small, machine, seed=2), runs[0]], chain)
     assert np.abs(gauge.xyz[:, 2] - part.xyz[:, 2] - 163.0).max() < 2.0 * PRINTED
-    good = evaluate([part], small, chain, U, Dialect(result_height="tip"))
+    good = evaluate([part], small, chain, U, words)
     assert np.abs(good.deviation).max() < 3.0 * UM
     with pytest.raises(DesignError, match="meaning of Z"):
         evaluate([part], small, chain, U)
@@ -97,8 +88,7 @@ def test_the_other_meaning_of_z_is_a_dialect(read, small, chain, runs):
 
 def test_the_set_up_is_found_and_deviations_are_the_noise(parts, small, chain, runs, read):
     run = evaluate(parts, small, chain, U)
-    stands = pose(rotation(np.array([1e-4, -2e-4, 5e-4])), np.array([0.08, -0.05, 0.03]))
-    true = read[0].heading.setup.T_table_artefact @ stands
+    true = read[0].heading.setup.T_table_artefact @ STANDS
     found = run.touches.setups[0].T_table_artefact
     assert np.abs(found - true)[:3, 3].max() < 1.5 * UM
     assert np.abs(found - true)[:3, :3].max() < 30.0 * URAD
@@ -110,10 +100,14 @@ def test_the_set_up_is_found_and_deviations_are_the_noise(parts, small, chain, r
     assert np.abs(np.linalg.norm(run.touches.normal, axis=1) - 1.0).max() < 1e-12
 
 
-def test_without_errors_nothing_is_left_but_the_digits_of_the_log(read, small, chain, perfect):
-    runs = run_programs(read, small, perfect, np.random.default_rng(0))
-    parts = [p for r in runs for p in read_log("L", chain.rotary_axes, *r.log.values())]
-    run = evaluate(parts, small, chain, U)
+def evaluated(read, small, machine):
+    """The run of all programs on a machine."""
+    runs = run_programs(read, small, machine, np.random.default_rng(0))
+    return evaluate(parts_of(runs, machine.chain), small, machine.chain, U)
+
+
+def test_without_errors_nothing_is_left_but_the_digits_of_the_log(read, small, perfect):
+    run = evaluated(read, small, perfect)
     assert np.abs(run.deviation).max() < 1.0 * NM
     assert np.abs(run.deviation - computed_deviation(run.touches)).max() < 1e-3 * NM
 
@@ -136,10 +130,7 @@ def test_a_log_read_back_through_a_run_file_is_the_same_run(parts, small, chain,
 def test_a_tangential_offset_of_the_set_up_is_not_taken_for_a_deviation(read, small, chain):
     """Half a millimetre beside its place the curved faces would deviate by many µm."""
     beside = pose(t=np.array([0.5, -0.4, 0.3]))
-    machine = VirtualMachine(chain, setup_error=beside)
-    runs = run_programs(read, small, machine, np.random.default_rng(0))
-    parts = [p for r in runs for p in read_log("L", chain.rotary_axes, *r.log.values())]
-    run = evaluate(parts, small, chain, U)
+    run = evaluated(read, small, VirtualMachine(chain, setup_error=beside))
     assert np.abs(run.deviation).max() < 2.0 * NM
 
 
@@ -207,10 +198,7 @@ def test_an_error_of_the_machine_stays_in_the_deviations(read, small, chain):
     """EXX linear, 100 µm over 400 mm: far more than a set-up can hide."""
     effect = ComponentError(chain.symbol("EXX"), "linear")
     machine = VirtualMachine(chain, lambda t: contribution([(effect, np.array([0.1]))], t))
-    runs = run_programs(read, small, machine, np.random.default_rng(0))
-    parts = [p for r in runs for p in read_log("L", chain.rotary_axes, *r.log.values())]
-    run = evaluate(parts, small, chain, U)
-    assert np.sqrt(np.mean(run.deviation**2)) > 2.0 * UM
+    assert np.sqrt(np.mean(evaluated(read, small, machine).deviation ** 2)) > 2.0 * UM
 
 
 def _as_control(masks, prints, adds_without_word):

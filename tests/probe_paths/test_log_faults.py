@@ -5,10 +5,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from programs import all_read, parts_of
 
+from matstd.artefact.tool import Probe
 from matstd.probe_paths.campaign import VirtualMachine, evaluate
 from matstd.probe_paths.campaign.virtual_run import run_programs
 from matstd.probe_paths.control import UNDATED, read_log
+from matstd.probe_paths.emit import make_programs
+from matstd.probe_paths.plan import PlanOptions, plan_touches
 from matstd.twin.errors import BadFile, DesignError
 from matstd.twin.frames import pose
 from matstd.twin.units import NM, UM
@@ -279,7 +283,7 @@ def test_two_versions_of_one_log_are_refused(lines, small, chain):
 
 
 def test_a_clock_set_back_between_two_programs_is_said(runs, small, chain):
-    parts = [p for r in runs for n, t in r.log.items() for p in read_log(n, chain.rotary_axes, t)]
+    parts = parts_of(runs, chain)
     assert evaluate(parts, small, chain, U).remarks == ()
     begin = parts[1].begin.replace(minute=parts[0].begin.minute + 1)
     run = evaluate([parts[0], replace(parts[1], begin=begin), parts[2]], small, chain, U)
@@ -326,32 +330,17 @@ def test_another_serial_number_is_refused(lines, small, chain):
 
 def test_a_sphere_beside_its_calibrated_place_is_said(golden, small, chain):
     """0.3 mm, of which the set-up takes up some; a standard in order has no such remark."""
-    from pathlib import Path
-
-    from matstd.artefact.tool.probe import Probe
-    from matstd.probe_paths.control.interpreter import interpret
-    from matstd.probe_paths.emit.program import make_programs
-    from matstd.probe_paths.plan.planner import plan_touches
-    from matstd.probe_paths.plan.touch_plan import PlanOptions
-
     wanted = golden.requests(small, each=6)
     options = PlanOptions(tolerated=len(wanted))
     plan = plan_touches(small, chain, Probe(), golden.setup(), wanted, options)
-    made = make_programs(plan)
-    programs = [
-        interpret(p.text.encode("ascii"), Path(f"{p.name}.H"), made.masks.get, chain)
-        for p in made.programs
-    ]
+    programs = all_read(make_programs(plan), chain)
     ball = small.spheres[1]
     moved = replace(ball, centre=ball.centre + np.array([0.0, 0.3, 0.0]))
     true = replace(small, spheres=(small.spheres[0], moved, small.spheres[2]))
     for standard, expected in ((small, []), (true, ["SPH2"])):
         machine = VirtualMachine(chain, setup_error=pose(t=np.array([0.2, 0.1, 0.0])), noise=U)
         runs = run_programs(programs, standard, machine, np.random.default_rng(0))
-        parts = [
-            p for r in runs for n, t in r.log.items() for p in read_log(n, chain.rotary_axes, t)
-        ]
-        remarks = evaluate(parts, small, chain, U).remarks
+        remarks = evaluate(parts_of(runs, chain), small, chain, U).remarks
         assert [remark.split()[0] for remark in remarks] == expected
 
 

@@ -1,7 +1,6 @@
 """What an order costs and gains: against brute force, the whole covariance, the plan's programs."""
 
 from dataclasses import replace
-from itertools import permutations
 
 import numpy as np
 import pytest
@@ -10,7 +9,7 @@ from matstd.artefact.reach import Requests
 from matstd.artefact.tool import Probe
 from matstd.probe_paths.campaign import orders, probing_time
 from matstd.probe_paths.campaign.order_study import _sd_beside, _shortest
-from matstd.probe_paths.plan import PlanOptions, short_order
+from matstd.probe_paths.plan import PlanOptions
 from matstd.twin.library import ordinary_model
 from matstd.twin.record import Setup
 from matstd.twin.units import MINUTE, UM
@@ -54,21 +53,6 @@ def test_touches_are_the_same_in_every_order(plan):
 
 
 _PER_TOUCH = ("visit", "request", "feature", "point", "normal", "start", "contact", "direction")
-
-
-def test_short_way_against_all_ways():
-    rng = np.random.default_rng(3)
-    for _ in range(5):
-        poses, home = rng.uniform(-2.0, 2.0, (6, 2)), np.zeros(2)
-
-        def turned(way, poses=poses, home=home):
-            path = np.concatenate([home[None], poses[list(way)], home[None]])
-            return np.abs(np.diff(path, axis=0)).max(axis=1).sum()
-
-        shortest = min(turned(way) for way in permutations(range(6)))
-        way = short_order(poses, home)
-        assert sorted(way) == list(range(6))
-        assert turned(way) <= 1.1 * shortest
 
 
 def test_standard_deviations_against_the_whole_covariance():

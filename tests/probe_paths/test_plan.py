@@ -9,8 +9,8 @@ import pytest
 
 from matstd.artefact.body import DatumSphere
 from matstd.artefact.body.datum import STEM_CLEARANCE
-from matstd.artefact.reach import Requests, Workshop
-from matstd.artefact.tool import Probe, solid_hull, swing_height, top_height
+from matstd.artefact.reach import Requests
+from matstd.artefact.tool import Probe
 from matstd.probe_paths.plan import (
     PlanOptions,
     plan_touches,
@@ -150,15 +150,6 @@ def test_safe_height_is_above_every_point_of_the_standard(plan, chain, small):
         up = table_to_tool(chain, q)[0, :3, 2]
         gap = up @ ball - plan.probe.radius - (solid @ up).max()
         assert plan.options.clearance - 0.5 < gap < plan.options.clearance + 30.0
-
-
-def test_swing_height_covers_every_position_in_between(chain, small):
-    solid = solid_hull(small, Setup("a"), Workshop())
-    path = np.array([[0.0, 0.0], [90.0 * DEG, -90.0 * DEG]])
-    highest = swing_height(chain, path, solid, Probe())[0]
-    share = np.linspace(0.0, 1.0, 50)[:, None]
-    diagonal = path[0] + share * (path[1] - path[0])
-    assert highest >= top_height(chain, diagonal, solid, Probe()).max() - 2.0
 
 
 def test_a_standard_too_high_for_the_retract_is_refused(golden):

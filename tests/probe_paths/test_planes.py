@@ -4,16 +4,15 @@ import re
 from dataclasses import replace
 from pathlib import Path
 
-import make_programs as golden
 import numpy as np
 import pytest
+from programs import as_read, parts_of, ran
 from scipy.spatial.transform import Rotation
 
 from matstd.artefact.brief import read_project
 from matstd.artefact.tool import Probe
 from matstd.probe_paths.campaign import VirtualMachine, evaluate
-from matstd.probe_paths.campaign.virtual_run import run_programs
-from matstd.probe_paths.control import Move, ProbeStep, interpret, read_log
+from matstd.probe_paths.control import Move, ProbeStep
 from matstd.probe_paths.emit import make_dry_run, make_programs
 from matstd.probe_paths.language import Dialect, read_dialect
 from matstd.probe_paths.plan import ProgramFrame
@@ -31,25 +30,14 @@ PIVOT, ORIGIN = np.array([0.0, 0.0, -420.0]), np.array([0.0, 0.0, -500.0])
 
 
 @pytest.fixture(scope="module")
-def plan():
-    return golden.plan()
-
-
-@pytest.fixture(scope="module")
 def made(plan):
     return make_programs(plan, TILTED)
 
 
-def read(made, plan, text=None):
-    (program,) = made.programs
-    data = (text or program.text).encode("ascii")
-    return interpret(data, Path(program.file), made.masks.get, plan.chain)
-
-
 @pytest.fixture(scope="module")
-def both(made, plan):
+def both(made, plan, chain):
     flat = make_programs(plan, Dialect())
-    return read(made, plan), read(flat, plan)
+    return as_read(made, chain), as_read(flat, chain)
 
 
 def test_axes_end_where_programs_without_planes_end(both):
@@ -94,9 +82,7 @@ def test_logs_of_both_strategies_are_the_same_measurements(both, plan):
     machine = VirtualMachine(plan.chain, lambda t: contribution(errors, t))
     runs = []
     for program in both:
-        (run,) = run_programs([program], plan.standard, machine, np.random.default_rng(1))
-        ((name, log),) = run.log.items()
-        parts = read_log(name, plan.chain.rotary_axes, log)
+        parts = parts_of([ran(program, plan.standard, machine, seed=1)], plan.chain)
         assert parts[0].heading.is_tilted is program.heading.is_tilted
         runs.append(evaluate(parts, plan.standard, plan.chain, 1e-3))
     tilted, flat = runs
@@ -108,7 +94,7 @@ def test_logs_of_both_strategies_are_the_same_measurements(both, plan):
 def test_a_dry_run_has_planes_too(plan):
     made = make_dry_run(plan, 80.0, TILTED)
     assert "PLANE SPATIAL" in made.programs[0].text
-    moves = [step for step in read(made, plan).steps if isinstance(step, Move)]
+    moves = [step for step in as_read(made, plan.chain).steps if isinstance(step, Move)]
     assert len(moves) > 100
 
 
@@ -131,7 +117,7 @@ def test_a_plane_that_is_not_the_table_s_is_refused(old, new, reason, made, plan
     assert lines != program.text.split("\r\n")
     bare = [re.sub(r"^\d+ ", "", line) for line in lines if line]
     with pytest.raises(BadFile, match=reason):
-        read(made, plan, "\r\n".join(bare) + "\r\n")
+        as_read(made, plan.chain, text="\r\n".join(bare) + "\r\n")
 
 
 @pytest.mark.parametrize("name", ["four-axis", "horizontal", "trunnion"])

@@ -1,31 +1,15 @@
 """Programs of a planned visit: its order, its sides, its standstill; all touches on the twin."""
 
-import shutil
-from pathlib import Path
-
 import numpy as np
 import pytest
 
 from matstd.api.replanning import planned_visit
-from matstd.artefact.body import write_standard
 from matstd.twin.errors import BadFile
 from matstd.twin.units import DEG
-
-MACHINE = Path(__file__).parents[2] / "examples" / "hsm600u-machine.toml"
 
 HEAD = "# warm_up_s = 1800, pause_s = 3600 after touch 6, slowness = 2\n"
 
 SIDES = ((1, -1), (-1, -1), (1, 1), (-1, 1))
-
-
-@pytest.fixture(scope="module")
-def design(golden, tmp_path_factory):
-    """A folder as a design leaves it, of the small standard; the example's machine is its own."""
-    folder = tmp_path_factory.mktemp("design")
-    write_standard(folder / "standard.toml", golden.standard())
-    shutil.copyfile(MACHINE, folder / "machine.toml")
-    golden.programs().write(folder / "programs")
-    return folder
 
 
 @pytest.fixture

@@ -6,16 +6,16 @@ points, the tool is exact cylinders.
 
 import re
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
+from programs import as_read
 
 from matstd.artefact.reach import ProbeReach, Solid, Workshop, round_table
 from matstd.artefact.tool import Probe, solid_hull, swing_height, top_height
 from matstd.artefact.tool.probe import NOSE_HEIGHT
 from matstd.probe_paths.campaign import check_moves
-from matstd.probe_paths.control import Move, ProbeStep, interpret
+from matstd.probe_paths.control import Move, ProbeStep
 from matstd.probe_paths.emit import Feeds, make_programs
 from matstd.probe_paths.plan import Heading, PlanOptions, ToolClearance, parse_heading, plan_touches
 from matstd.twin.errors import BadFile
@@ -152,9 +152,7 @@ def test_every_move_of_the_program_keeps_clear(wide, points, small, chain):
     made = make_programs(wide, feeds=Feeds(touches_per_file=25))
     z = chain.axis_index("Z")
     highest = points[:, 2].max()
-    program = made.programs[0]
-    path = Path(f"{program.name}.H")
-    read = interpret(program.text.encode("ascii"), path, made.masks.get, chain)
+    read = as_read(made, chain)
     assert read.heading.probe == WIDE
     check_moves(read, small, chain)
     here = None
@@ -194,14 +192,14 @@ def other_head(programs, change):
         for line, other in zip(heading.log_lines, changed.log_lines, strict=True):
             text = text.replace(f'"{line}"', f'"{other}"')
         masks[name] = text
-    return "\r\n".join(blocks), masks.get
+    return replace(programs, masks=masks), "\r\n".join(blocks)
 
 
 def test_a_program_for_a_slim_probe_is_refused_with_a_wide_one_in_its_head(programs, small, chain):
     """The same moves, another probe: the check reads it from the text."""
     wide = replace(WIDE, stack=((25.0, 1.5), (160.0, 31.0)))
-    text, masks = other_head(programs, lambda head: replace(head, probe=wide))
-    read = interpret(text.encode("ascii"), Path("MS_A_1.H"), masks, chain)
+    made, text = other_head(programs, lambda head: replace(head, probe=wide))
+    read = as_read(made, chain, text=text)
     assert read.heading.probe == wide
     with pytest.raises(BadFile, match="a gap of"):
         check_moves(read, small, chain)
@@ -209,9 +207,7 @@ def test_a_program_for_a_slim_probe_is_refused_with_a_wide_one_in_its_head(progr
 
 def test_a_clamp_in_the_head_is_kept_clear_of(programs, small, chain):
     """A post that stands where the stylus of the third touch goes down."""
-    plain = interpret(
-        programs.programs[0].text.encode("ascii"), Path("MS_A_1.H"), programs.masks.get, chain
-    )
+    plain = as_read(programs, chain)
     x, y, z = tip(chain, plain.touches[2].q[None], 160.0)[0]
     post = Solid(
         "POST", (6.0, 6.0), True, 0.0, round(z, 1) + 5.0, x=round(x, 1) + 8.4, y=round(y, 1)
@@ -220,8 +216,8 @@ def test_a_clamp_in_the_head_is_kept_clear_of(programs, small, chain):
     def with_post(head):
         return replace(head, workshop=replace(head.workshop, bodies=(post,)))
 
-    text, masks = other_head(programs, with_post)
-    read = interpret(text.encode("ascii"), Path("MS_A_1.H"), masks, chain)
+    made, text = other_head(programs, with_post)
+    read = as_read(made, chain, text=text)
     with pytest.raises(BadFile, match=r"a gap of .* to POST"):
         check_moves(read, small, chain)
 
@@ -229,14 +225,14 @@ def test_a_clamp_in_the_head_is_kept_clear_of(programs, small, chain):
 def test_a_body_that_somebody_changed_by_hand_is_refused(programs, chain):
     text = programs.programs[0].text.replace("STACK TO+80.000000 R+2.0", "STACK TO+80.000000 R+1.0")
     with pytest.raises(BadFile, match=r"a probe and bodies of hash .* as stated: emit"):
-        interpret(text.encode("ascii"), Path("MS_A_1.H"), programs.masks.get, chain)
+        as_read(programs, chain, text=text)
 
 
 def test_a_head_without_probe_and_table_is_refused(programs, chain):
     text = re.sub(r"(?m)^\d+ ", "", programs.programs[0].text)
     text = re.sub(r"(?m)^;(STACK|NOSE|BODY|AT) .*\r\n", "", text)
     with pytest.raises(BadFile, match="emit the program again"):
-        interpret(text.encode("ascii"), Path("MS_A_1.H"), programs.masks.get, chain)
+        as_read(programs, chain, text=text)
 
 
 def test_a_heading_states_probe_and_workshop_and_reads_them_back():

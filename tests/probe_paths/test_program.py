@@ -2,14 +2,14 @@
 
 import re
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
+from programs import as_read
 
 from matstd.artefact.tool import Probe
 from matstd.probe_paths.campaign import check_moves
-from matstd.probe_paths.control import Clock, Move, interpret
+from matstd.probe_paths.control import Clock, Move
 from matstd.probe_paths.emit import Feeds, make_dry_run, make_programs
 from matstd.probe_paths.emit.writer import visit_title
 from matstd.probe_paths.language import MAX_LINE, Dialect, Kind, read_blocks
@@ -114,36 +114,29 @@ def test_no_file_takes_longer_than_asked(plan, programs):
 def test_a_program_starts_at_any_visit(plan, programs, chain, golden):
     """Its touches, their readings and their sides are those of the whole program from there on."""
     rotary = [chain.axis_index(a) for a in chain.rotary_axes]
-    for control, program in (("itnc530", programs.programs[0]), ("linuxcnc", None)):
-        program = program or golden.programs(control).programs[0]
-        whole = interpreted(program, program.text, programs, chain)
+    for made in (programs, golden.programs("linuxcnc")):
+        whole, first = as_read(made, chain), made.programs[0].text
         sizes = np.unique([t.pose for t in whole.touches], return_counts=True)[1]
         assert len(sizes) > 2
         for start in range(1, len(sizes) + 1):
-            text = program.text.replace("1640 = +1", f"1640 = +{start}")
-            tail = interpreted(program, text, programs, chain).touches
+            text = first.replace("1640 = +1", f"1640 = +{start}")
+            tail = as_read(made, chain, text=text).touches
             wanted = whole.touches[len(whole.touches) - len(tail) :]
             assert len({t.pose for t in tail}) == len(sizes) - start + 1
             for one, other in zip(tail, wanted, strict=True):
-                assert (one.number, one.pose, one.feature) == (
-                    other.number,
-                    other.pose,
-                    other.feature,
-                )
+                for name in ("number", "pose", "feature"):
+                    assert getattr(one, name) == getattr(other, name)
                 assert np.array_equal(one.q, other.q)
                 assert np.array_equal(one.side[rotary], other.side[rotary])
 
 
-def interpreted(program, text, programs, chain):
-    return interpret(text.encode("ascii"), Path(program.file), programs.masks.get, chain)
-
-
 def test_a_dry_run_goes_to_every_place_and_touches_nothing(plan, chain, small):
-    (program,) = make_dry_run(plan, 100.0).programs
+    made = make_dry_run(plan, 100.0)
+    (program,) = made.programs
     assert program.touches == 0
     assert "TCH PROBE" not in program.text
     assert "FN 16" not in program.text
-    read = interpret(program.text.encode("ascii"), Path(program.file), {}.get, chain)
+    read = as_read(made, chain)
     check_moves(read, small, chain)
     x, z = chain.axis_index("X"), chain.axis_index("Z")
     down = [
@@ -156,7 +149,7 @@ def test_a_dry_run_goes_to_every_place_and_touches_nothing(plan, chain, small):
     assert lows.min() > plan.start[:, z].min() + 99.9
     spoilt = program.text.replace("DRY RUN, RAISED BY", "DRY RUN, BY")
     with pytest.raises(BadFile, match="TOUCHES <first> TO <last>"):
-        interpret(spoilt.encode("ascii"), Path(program.file), {}.get, chain)
+        as_read(made, chain, text=spoilt)
 
 
 def test_a_dry_run_that_touches_is_refused(plan, programs, chain):
@@ -165,7 +158,7 @@ def test_a_dry_run_that_touches_is_refused(plan, programs, chain):
         r"TOUCHES 1 TO \d+, ABOUT \d+ MIN", "DRY RUN, RAISED BY +100.0 MM, NO TOUCH", text
     )
     with pytest.raises(BadFile, match="expected none: a dry run"):
-        interpret(text.encode("ascii"), Path("MS_A_1.H"), programs.masks.get, chain)
+        as_read(programs, chain, text=text)
 
 
 def test_the_duration_is_that_of_the_read_text(plan, programs):

@@ -1,17 +1,16 @@
 """Temperatures that the control's PLC hands to programs: logged with every touch, in the run."""
 
 import re
-import sys
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from programs import as_read, ran
 
 from matstd.artefact.brief import read_project
 from matstd.probe_paths.campaign import VirtualMachine, evaluate
-from matstd.probe_paths.campaign.virtual_run import run_programs
-from matstd.probe_paths.control import interpret, read_log
+from matstd.probe_paths.control import read_log
 from matstd.probe_paths.emit import make_programs
 from matstd.probe_paths.language import Dialect
 from matstd.probe_paths.plan import Sensor
@@ -20,27 +19,13 @@ from matstd.twin.errors import BadFile
 from matstd.twin.files import read_run, write_run
 
 ROOT = Path(__file__).parents[2]
-sys.path.insert(0, str(ROOT / "tests" / "golden"))
-import make_programs as golden  # noqa: E402
-
 SENSORS = (Sensor("spindle", 100), Sensor("bed", 103, 0.1, -5.0))
 WORDS = replace(Dialect(), sensors=SENSORS)
 
 
 @pytest.fixture(scope="module")
-def plan():
-    return golden.plan()
-
-
-@pytest.fixture(scope="module")
 def made(plan):
     return make_programs(plan, WORDS)
-
-
-def read(made, plan, text=None, masks=None):
-    (program,) = made.programs
-    data = (text or program.text).encode("ascii")
-    return interpret(data, Path(program.file), (masks or made.masks).get, plan.chain)
 
 
 def warm(name, now):
@@ -51,8 +36,7 @@ def warm(name, now):
 @pytest.fixture(scope="module")
 def log(made, plan):
     machine = VirtualMachine(plan.chain, temperature=warm)
-    program = read(made, plan)
-    (run,) = run_programs([program], plan.standard, machine, np.random.default_rng(1))
+    run = ran(as_read(made, plan.chain), plan.standard, machine, seed=1)
     ((_, text),) = run.log.items()
     return text, run.time[np.isfinite(run.time)]
 
@@ -111,7 +95,7 @@ def test_a_sensor_that_the_head_does_not_state_is_refused(change, reason, made, 
     text, masks = change(made.programs[0].text, made.masks)
     bare = [re.sub(r"^\d+ ", "", line) for line in text.split("\r\n") if line]
     with pytest.raises(BadFile, match=reason):
-        read(made, plan, "\r\n".join(bare) + "\r\n", masks)
+        as_read(replace(made, masks=masks), plan.chain, text="\r\n".join(bare) + "\r\n")
 
 
 @pytest.mark.parametrize(

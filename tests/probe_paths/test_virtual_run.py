@@ -1,9 +1,8 @@
 """Virtual probing: contacts against a second, slow search; errors against deviations by hand."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
+from programs import as_read, ran
 from scipy.interpolate import BSpline
 from scipy.optimize import brentq, minimize
 
@@ -13,7 +12,6 @@ from matstd.artefact.tool import Probe
 from matstd.probe_paths.campaign import VirtualMachine
 from matstd.probe_paths.campaign.stamps import check_program_stamp
 from matstd.probe_paths.campaign.virtual_run import Outcome, run_programs
-from matstd.probe_paths.control import interpret
 from matstd.probe_paths.emit import make_programs
 from matstd.probe_paths.plan import PlanOptions, plan_touches, requests_at
 from matstd.twin.effects import ComponentError, LocationError
@@ -47,7 +45,7 @@ def deviations(run, standard, chain):
 
 def test_a_perfect_machine_measures_nothing(read, small, perfect, chain):
     for program in read:
-        run = run_programs([program], small, perfect, np.random.default_rng(0))[0]
+        run = ran(program, small, perfect)
         assert run.outcome is Outcome.DONE
         dev = deviations(run, small, chain)
         assert np.abs(dev).max() < NM
@@ -86,7 +84,7 @@ def test_contacts_against_bisection_of_the_distance(read, small, chain):
     believed = read[0].heading.setup.T_table_artefact
     stands = pose(rotation(np.array([2e-4, -1e-4, 3e-4])), np.array([0.03, -0.02, 0.04]))
     machine = VirtualMachine(chain, lambda t: contribution(errors, t), setup_error=stands)
-    run = run_programs(read[:1], small, machine, np.random.default_rng(0))[0]
+    run = ran(read[0], small, machine)
     T_artefact_table = inverse(believed @ stands)
     rows = [i for i, name in enumerate(run.feature) if name.startswith("FF")][::3]
     assert len(rows) >= 3
@@ -126,7 +124,7 @@ def test_all_errors_at_once_against_the_linear_model(read, small, chain, plan):
     model = Model(chain, tuple(effect for effect, _ in errors))
     theta = np.concatenate([size for _, size in errors])
     for program in read:
-        run = run_programs([program], small, machine, np.random.default_rng(0))[0]
+        run = ran(program, small, machine)
         measured = deviations(run, small, chain)
         rows = [t.number - 1 for t in program.touches]
         n = len(rows)
@@ -176,15 +174,13 @@ def test_one_error_gives_the_deviation_worked_out_by_hand(
     )
     setup = Setup("a")
     plan = plan_touches(of, chain, slim, setup, wanted, options)
-    program = make_programs(plan).programs[0]
-    masks = make_programs(plan).masks
-    read = interpret(program.text.encode("ascii"), Path("MS_A_1.H"), masks.get, chain)
+    read = as_read(make_programs(plan), chain)
     row = int(np.flatnonzero(plan.request == 0)[0])
     symbol = chain.symbol(name)
     is_component = symbol.family.name == "COMPONENT"
     effect = ComponentError(symbol, "constant") if is_component else LocationError(symbol)
     machine = VirtualMachine(chain, lambda t: contribution([(effect, np.array([size]))], t))
-    run = run_programs([read], of, machine, np.random.default_rng(0))[0]
+    run = ran(read, of, machine)
     dev = deviations(run, of, chain)[row]
     assert abs(dev - by_hand * UM) < 1e-3 * UM
 
@@ -196,9 +192,7 @@ def test_shift_of_the_standard_and_bias_of_the_probe_count_outwards(read, small,
         added.bias[:] = 0.7 * UM
         return added
 
-    run = run_programs(
-        [read[0]], small, VirtualMachine(chain, disturbance), np.random.default_rng(0)
-    )[0]
+    run = ran(read[0], small, VirtualMachine(chain, disturbance))
     rows = [t.number - 1 for t in read[0].touches]
     normal = turn(plan.setup.T_table_artefact, plan.normal[rows])
     expected = normal @ np.array([2.0, -1.0, 3.0]) * UM + 0.7 * UM
@@ -209,7 +203,7 @@ def test_shift_of_the_standard_and_bias_of_the_probe_count_outwards(read, small,
 def test_a_probe_that_differs_from_its_calibration(read, small, chain, plan):
     """A larger ball meets early, so does a longer probe where the surface looks up at it."""
     machine = VirtualMachine(chain, radius_error=5.0 * UM, length_error=4.0 * UM)
-    run = run_programs(read[:1], small, machine, np.random.default_rng(0))[0]
+    run = ran(read[0], small, machine)
     rows = [t.number - 1 for t in read[0].touches]
     normal = turn(plan.setup.T_table_artefact, plan.normal[rows])
     axis = table_to_tool(chain, run.q)[:, :3, 2]
@@ -219,7 +213,7 @@ def test_a_probe_that_differs_from_its_calibration(read, small, chain, plan):
 
 def test_noise_is_that_of_the_trigger_and_of_the_seed(read, small, chain):
     machine = VirtualMachine(chain, noise=2.0 * UM)
-    runs = [run_programs(read[:1], small, machine, np.random.default_rng(s))[0] for s in (4, 4, 5)]
+    runs = [ran(read[0], small, machine, seed) for seed in (4, 4, 5)]
     dev = [deviations(run, small, chain) for run in runs]
     drawn = np.random.default_rng(4).normal(0.0, 1.0, len(dev[0])) * 2.0 * UM
     assert np.abs(dev[0] - drawn).max() < HARDLY_CURVED
@@ -227,21 +221,14 @@ def test_noise_is_that_of_the_trigger_and_of_the_seed(read, small, chain):
     assert np.abs(dev[0] - dev[2]).max() > UM
 
 
-def changed(program, chain, masks, old, new):
-    """The program with one change in its text, read again."""
-    assert old in program.text
-    text = program.text.replace(old, new, 1)
-    return interpret(text.encode("ascii"), Path(f"{program.name}.H"), masks.get, chain)
-
-
 def test_a_vector_the_wrong_way_meets_nothing_and_the_program_stops(
     programs, chain, small, perfect, read
 ):
-    first = programs.programs[0]
-    third = first.text.split("TCH PROBE 4.2 ")[3].split("\r\n")[0]
+    first = programs.programs[0].text
+    third = first.split("TCH PROBE 4.2 ")[3].split("\r\n")[0]
     turned = third.translate(str.maketrans("+-", "-+"))
-    broken = changed(first, chain, programs.masks, third, turned)
-    run = run_programs([broken], small, perfect, np.random.default_rng(0))[0]
+    broken = as_read(programs, chain, text=first.replace(third, turned, 1))
+    run = ran(broken, small, perfect)
     assert run.outcome is Outcome.NO_CONTACT
     assert run.reached == 3
     with pytest.raises(NotReachable, match=r"touch 3 on .*meets nothing"):
@@ -264,7 +251,7 @@ def test_a_vector_the_wrong_way_meets_nothing_and_the_program_stops(
 )
 def test_a_standard_that_stands_elsewhere_stops_the_program(read, small, chain, stands, met):
     machine = VirtualMachine(chain, setup_error=pose(t=np.array(stands)))
-    run = run_programs(read[:1], small, machine, np.random.default_rng(0))[0]
+    run = ran(read[0], small, machine)
     assert run.outcome is Outcome.NO_CONTACT
     assert run.meeting[run.reached - 1] in met
     assert np.isnan(run.q[run.reached - 1]).all()
@@ -282,8 +269,8 @@ def test_a_touch_beside_the_trimmed_face_is_no_contact(golden, chain, perfect):
     assert text.count(f"{x} {y}") == 2
     for beside, met in ((15.5, {Meeting.EDGE}), (17.0, {Meeting.EDGE}), (30.0, set(Meeting))):
         moved = text.replace(f"{x} {y}", f"X+{beside:.4f} {y}")
-        read = interpret(moved.encode("ascii"), Path("MS_A_1.H"), made.masks.get, chain)
-        run = run_programs([read], of, perfect, np.random.default_rng(0))[0]
+        read = as_read(made, chain, text=moved)
+        run = ran(read, of, perfect)
         assert run.outcome is Outcome.NO_CONTACT
         assert run.meeting[run.reached - 1] in met
 
@@ -310,7 +297,7 @@ def test_directions_of_approach_are_those_of_the_moves(read, small, chain):
         seen.append(touches)
         return Contribution.zeros(len(touches), len(chain.links))
 
-    run_programs(read[:1], small, VirtualMachine(chain, disturbance), np.random.default_rng(0))[0]
+    ran(read[0], small, VirtualMachine(chain, disturbance))
     touches = seen[-1]
     assert np.array_equal(touches.approach[:, :2], np.array([t.side[:2] for t in read[0].touches]))
     columns = [chain.axis_index(a) for a in "XYZ"]
