@@ -4,14 +4,14 @@ import json
 
 import numpy as np
 import pytest
-from bench import oracle_tip
+from bench import oracle_tip, part_program, readings
 
 from matstd.cli import main
 from matstd.compensation.field import State
-from matstd.compensation.part_programs import Frame, read_part_program
+from matstd.compensation.part_programs import Frame
 from matstd.compensation.programs import compensated
 from matstd.compensation.tables import header_of
-from matstd.twin.units import DEG, UM
+from matstd.twin.units import UM
 
 GCODE = """G0 X0 Y0 Z-20
 G1 X300 F800
@@ -43,16 +43,6 @@ def places(text):
             at |= words
             out.append([at[k] for k in "XYZBC"])
     return np.array(out)
-
-
-def readings(xyzbc, frame):
-    """Of coordinates of the machine from the datum."""
-    chain, zero = frame.chain, frame.datum.q
-    q = np.zeros((len(xyzbc), len(chain.axes)))
-    for column, axis in enumerate("XYZBC"):
-        k = chain.axis_index(axis)
-        q[:, k] = xyzbc[:, column] * (DEG if axis in "BC" else 1.0) + zero[k] * (axis in "XYZ")
-    return q
 
 
 def of_tool_point(xyzbc, frame):
@@ -123,9 +113,8 @@ def test_the_largest_distance_is_that_of_the_second_model(
 ):
     text, paths = PATHS[name]
     frame = Frame(bench_chain, datum)
-    (tmp_path / name).write_text(text)
     head = header_of(bench_chain, "0123456789ab", datum, State())
-    done = compensated(read_part_program(tmp_path / name, frame), known, head, tolerance)
+    done = compensated(part_program(text, frame, tmp_path, name), known, head, tolerance)
     at = places(done.text)
     assert len(at) == len(done.motion)
     aim = oracle_tip(datum.q[None], bench_chain) - oracle_tip(

@@ -74,6 +74,12 @@ def drifting(thermal_json, bench_chain):
     return parse_effect(f"drift-law({thermal_json},z:EZZ,tilt:-EAY)", bench_chain).whole
 
 
+def at_state(drifting, chain, **state):
+    """A machine whose only error is the law, at a state."""
+    errors = MachineErrors.of_errors(chain, [], State(**state))
+    return errors.with_known([(drifting, drifting.known[0])], drifting.known[1])
+
+
 def warmth(time, tau):
     return -np.expm1(-np.maximum(time, 0.0) / tau)
 
@@ -102,10 +108,8 @@ def test_irregular_touches_give_what_heat_gives(drifting, bench_chain):
 
 def test_columns_move_what_they_are_bound_to(drifting, bench_chain):
     """One pose by hand: Z grows, and about X the way from the foot of Y's table turns."""
-    state = State(time=10.0 * HOUR, temperature={"frame": 25.0}, spindle_rpm=1000.0)
-    errors = MachineErrors.of_errors(bench_chain, [], state).with_known(
-        [(drifting, drifting.known[0])], drifting.known[1]
-    )
+    state = {"time": 10.0 * HOUR, "temperature": {"frame": 25.0}, "spindle_rpm": 1000.0}
+    errors = at_state(drifting, bench_chain, **state)
     q = np.zeros((1, 6))
     moved = deviation(errors, errors.touches(q, LENGTH))[0]
     assert moved[2] == pytest.approx(5.0 * PER_K + 1000.0 * PER_RPM, rel=1e-3)
@@ -121,10 +125,8 @@ def test_columns_move_what_they_are_bound_to(drifting, bench_chain):
 
 def test_u_is_that_of_the_law_and_grows_beyond_its_training(drifting, bench_chain):
     for degc in (20.0, 40.0):
-        state = State(time=10.0 * HOUR, temperature={"frame": degc}, spindle_rpm=2000.0)
-        errors = MachineErrors.of_errors(bench_chain, [], state).with_known(
-            [(drifting, drifting.known[0])], drifting.known[1]
-        )
+        state = {"time": 10.0 * HOUR, "temperature": {"frame": degc}, "spindle_rpm": 2000.0}
+        errors = at_state(drifting, bench_chain, **state)
         at = errors.touches(np.zeros((1, 6)), LENGTH)
         z = errors.columns(at)[0, 2] @ errors.root
         expected = LEFT[0] * np.sqrt(1.0 + 1e-3 + (KNOWN * (degc - 20.0) / 2.0) ** 2)
@@ -157,10 +159,7 @@ def test_a_model_learns_how_much_of_a_law_there_is_and_keeps_its_unknowns(drifti
 
 @pytest.fixture
 def service(drifting, bench_chain, datum):
-    begin = State(temperature={"frame": 20.0}, spindle_rpm=0.0)
-    errors = MachineErrors.of_errors(bench_chain, [], begin).with_known(
-        [(drifting, drifting.known[0])], drifting.known[1]
-    )
+    errors = at_state(drifting, bench_chain, temperature={"frame": 20.0}, spindle_rpm=0.0)
     return Service(errors, LENGTH, datum, OutputLimits(most=1.0))
 
 

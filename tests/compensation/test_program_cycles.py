@@ -5,9 +5,9 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from bench import part_program
 from rs274 import interpreted, is_there
 
-from matstd.compensation.part_programs import read_part_program
 from matstd.compensation.programs import compensated
 from matstd.twin.errors import BadFile
 from matstd.twin.units import DEG, UM
@@ -32,12 +32,6 @@ G90 M30
 %
 """
 START = "BEGIN PGM A MM\nTOOL CALL 3 Z S100\nL X+0 Y+0 Z+9 FMAX\nL Z+0 F500\n"
-
-
-def program(text, frame, folder, name="a.H", **more):
-    path = folder / name
-    path.write_text(text)
-    return read_part_program(path, frame, **more)
 
 
 def drilled(text, folder):
@@ -75,7 +69,7 @@ def ours(found):
 @is_there
 def test_linuxcnc_drills_the_same_holes(frame, known, head, tmp_path):
     """Places, R, bottoms and heights to which it returns; then those that are written."""
-    found = program(HOLES, frame, tmp_path, "a.ngc")
+    found = part_program(HOLES, frame, tmp_path, "a.ngc")
     theirs, _ = drilled(HOLES, tmp_path)
     assert len(theirs) == 8
     np.testing.assert_allclose(ours(found), theirs, atol=1e-4)
@@ -98,7 +92,7 @@ def test_linuxcnc_drills_the_same_holes(frame, known, head, tmp_path):
 
 
 def test_a_hole_is_where_it_should_be_at_its_bottom(frame, known, head, tmp_path):
-    done = compensated(program(HOLES, frame, tmp_path, "a.ngc"), known, head)
+    done = compensated(part_program(HOLES, frame, tmp_path, "a.ngc"), known, head)
     motions = done.program.motions
     bottoms = [k for k, m in enumerate(motions) if m.cycle and m.cycle.block]
     off = {
@@ -129,14 +123,14 @@ def test_a_hole_is_where_it_should_be_at_its_bottom(frame, known, head, tmp_path
 )
 def test_cycles_that_are_refused(frame, tmp_path, lines, said):
     with pytest.raises(BadFile) as refused:
-        program(f"G0 X0 Y0 Z9\nG1 X1 F9\n{lines}\n", frame, tmp_path, "a.ngc")
+        part_program(f"G0 X0 Y0 Z9\nG1 X1 F9\n{lines}\n", frame, tmp_path, "a.ngc")
     assert said in str(refused.value)
 
 
 def test_inverse_time_stays_the_time(frame, known, head, tmp_path):
     """A line that becomes several takes as long as it did."""
     text = "G21 G90 G0 X0 Y0 Z0\nG93 G1 X100 B20 C40 F2.5\nG94 G1 X0 F100\n"
-    found = program(text, frame, tmp_path, "a.ngc")
+    found = part_program(text, frame, tmp_path, "a.ngc")
     done = compensated(found, known, head)
     block = done.text.partition("G93")[2].partition("G94")[0]
     minutes = [1.0 / float(f) for f in re.findall(r"F(\S+)", block)]
@@ -149,9 +143,9 @@ def test_a_tool_changes_where_the_program_says(frame, tmp_path):
     """T before M6 is the next one; H names the length; without any M6 the T word itself counts."""
     text = "T1 M6\nT2\nG0 X0 Y0 Z0\nG43 H7 X1\nM6\nX2\n"
     lengths = {1: 100.0, 2: 120.0, 7: 70.0}
-    found = program(text, frame, tmp_path, "a.ngc", lengths=lengths)
+    found = part_program(text, frame, tmp_path, "a.ngc", lengths=lengths)
     assert [m.length for m in found.motions] == [100.0, 70.0, 120.0]
-    found = program("T2\nG0 X0 Y0 Z0\n", frame, tmp_path, "b.ngc", lengths=lengths)
+    found = part_program("T2\nG0 X0 Y0 Z0\n", frame, tmp_path, "b.ngc", lengths=lengths)
     assert [m.length for m in found.motions] == [120.0]
 
 
@@ -165,9 +159,9 @@ def test_tool_point_control_has_three_names(frame, tmp_path):
         line = "G0 " if name.endswith("ngc") else "L FMAX "
         blocks = ["X+1 Y+2 Z+3", on, "X+10 Y+20 Z-5 B-40 C+30", off, "Z+50"]
         text = "\n".join(b if b in (on, off) else line + b for b in blocks) + "\n"
-        ends.append([(m.tcpm, *m.end) for m in program(text, frame, tmp_path, name).motions])
+        ends.append([(m.tcpm, *m.end) for m in part_program(text, frame, tmp_path, name).motions])
     text = "G0 X1 Y2 Z3\nM428\nG0 X10 Y20 Z-5 B-40 C30\nM429\nG0 Z50\n"
-    found = program(text, frame, tmp_path, "c.ngc", tcp_functions=(428, 429))
+    found = part_program(text, frame, tmp_path, "c.ngc", tcp_functions=(428, 429))
     ends.append([(m.tcpm, *m.end) for m in found.motions])
     assert [row[0] for row in ends[0]] == [False, True, False]
     np.testing.assert_allclose(ends[0], ends[1], atol=1e-9)
@@ -191,7 +185,7 @@ def test_holes_of_klartext(frame, known, head, tmp_path):
     """M99, M89, CYCL CALL, CYCL CALL POS: the surface is shifted, the rest of the cycle stays."""
     calls = "L X+20 Y+10 FMAX M99\nL X+30 R0 FMAX M89\nL Y+40 C+30 FMAX\nL X-10 FMAX M99\n"
     calls += "L X-20 Y-20 FMAX\nCYCL CALL M8\nCYCL CALL POS X+50 Y+50 Z-5 FMAX\nL Z+50 FMAX\n"
-    found = program(START + DRILL + calls, frame, tmp_path)
+    found = part_program(START + DRILL + calls, frame, tmp_path)
     z = frame.chain.axis_index("Z")
     at = ours(found)
     expected = [[20, 10], [30, 10], [30, 40], [-10, 40], [-20, -20], [50, 50]]
@@ -207,7 +201,7 @@ def test_holes_of_klartext(frame, known, head, tmp_path):
     np.testing.assert_allclose(np.array(surfaces) - 15.0, bottoms, atol=1e-4)
     assert np.linalg.norm(done.after[rows], axis=1).max() < 0.15 * UM
     assert done.text.count("DEPTH {of the hole}") == done.text.count("M99") == 6
-    twice = program(f"{START}{DRILL}L X+20 Y+10 FMAX M99\nL X+20 FMAX M99\n", frame, tmp_path)
+    twice = part_program(f"{START}{DRILL}L X+20 Y+10 FMAX M99\nL X+20 FMAX M99\n", frame, tmp_path)
     text = compensated(twice, known, head).text
     assert text.count("CYCL DEF 200") == 1
     assert text.count("M99") == 2
@@ -238,18 +232,18 @@ def test_holes_of_klartext(frame, known, head, tmp_path):
 )
 def test_klartext_that_is_refused(frame, tmp_path, blocks, said):
     with pytest.raises(BadFile) as refused:
-        program(f"{START}{blocks}\n", frame, tmp_path)
+        part_program(f"{START}{blocks}\n", frame, tmp_path)
     assert said in str(refused.value)
 
 
 def test_after_a_cycle_the_motion_before_it_holds(frame, tmp_path):
     """As on Fanuc; LinuxCNC asks for a word, which is written anyway."""
     text = "G0 X0 Y0 Z5\nG81 X1 Z-3 R2 F100\nG80\nZ15\nG80\n"
-    found = program(text, frame, tmp_path, "a.ngc")
+    found = part_program(text, frame, tmp_path, "a.ngc")
     assert [m.line for m in found.motions] == [1, 2, 2, 2, 4]
     assert found.motions[-1].is_rapid
     with pytest.raises(BadFile, match="line 6: found axes without G0"):
-        program(f"{text}X5\n", frame, tmp_path, "a.ngc")
+        part_program(f"{text}X5\n", frame, tmp_path, "a.ngc")
 
 
 def test_words_of_posts_that_move_nothing(frame, tmp_path):
@@ -259,7 +253,7 @@ def test_words_of_posts_that_move_nothing(frame, tmp_path):
         "L X+5 Y+6 R0 F MAX\nL Z+5 FMAX\nM120 LA10\nL X+20 F AUTO\nTOOL CALL S4000\n"
         "L M140 MB MAX\nL X+0 FMAX\nEND PGM A MM\n"
     )
-    found = program(text, frame, tmp_path, lengths={"MILL_D10": 77.0}, passed=[88])
+    found = part_program(text, frame, tmp_path, lengths={"MILL_D10": 77.0}, passed=[88])
     assert [(m.line, m.feed, m.length) for m in found.motions] == [(7, 0.0, 77.0), (9, 800.0, 77.0)]
     assert [i.line for i in found.items if getattr(i, "moves", False)] == [4, 6, 11, 12]
 
@@ -269,8 +263,8 @@ def test_inches(frame, tmp_path):
     text += "CC X+0 Y+0\nC X{:+g} Y{:+g} DR+\n"
     numbers = (1.0, 2.0, 0.5, 200.0, -2.0, 1.0)
     scaled = [v * (2.54 if k == 3 else 25.4) for k, v in enumerate(numbers)]
-    a = program(text.format("INCH", *numbers), frame, tmp_path).motions
-    b = program(text.format("MM", *scaled), frame, tmp_path, "b.H").motions
+    a = part_program(text.format("INCH", *numbers), frame, tmp_path).motions
+    b = part_program(text.format("MM", *scaled), frame, tmp_path, "b.H").motions
     for one, other in zip(a, b, strict=True):
         np.testing.assert_allclose(one.end, other.end, atol=1e-9)
         assert one.feed == pytest.approx(other.feed)
@@ -281,7 +275,7 @@ def test_polar_coordinates(frame, tmp_path):
     text = (
         f"{START}CC X+10 Y+20\nLP PR+30 PA+60\nLP IPA+60 Z-2\nCP IPA-540 IZ-6 DR-\nCP PA+90 DR-\n"
     )
-    found = program(text, frame, tmp_path).motions[2:]
+    found = part_program(text, frame, tmp_path).motions[2:]
     columns = [frame.chain.axis_index(a) for a in "XYZ"]
     s = 30.0 * np.sqrt(0.75)
     expected = [[25, 20 + s, 0], [-5, 20 + s, -2], [25, 20 - s, -8], [10, 50, -8]]
@@ -294,7 +288,7 @@ def test_corners(frame, tmp_path, size):
     """A rounded corner touches both of its sides, a chamfer cuts the same off both."""
     columns = [frame.chain.axis_index(a) for a in "XY"]
     text = f"{START}L X+40\nRND R{size:g}\nL Y+40\nCHF {size:g}\nL X+10\n"
-    found = program(text, frame, tmp_path).motions[2:]
+    found = part_program(text, frame, tmp_path).motions[2:]
     ends = np.array([m.end[columns] for m in found])
     np.testing.assert_allclose(ends[0], [40 - size, 0], atol=1e-9)
     np.testing.assert_allclose(found[1].arc.centre, [40 - size, size], atol=1e-9)
@@ -310,7 +304,7 @@ def test_a_corner_between_a_line_and_an_arc(frame, tmp_path, sense):
     y, own = 10.0 if sense == "+" else -10.0, np.sqrt(200.0)
     far = y + np.copysign(own, y)
     text = f"{START}L X+40\nRND R2\nCC X+30 Y{y:+g}\nC X+30 Y{far:+.9f} DR{sense}\n"
-    line, between, arc = program(text, frame, tmp_path).motions[2:]
+    line, between, arc = part_program(text, frame, tmp_path).motions[2:]
     centre = between.arc.centre
     assert centre[1] == pytest.approx(np.copysign(2.0, y))
     assert np.hypot(*(centre - [30.0, y])) == pytest.approx(own - 2.0)
@@ -324,7 +318,7 @@ def test_a_corner_between_a_line_and_an_arc(frame, tmp_path, sense):
 def test_a_corner_beside_the_tool(frame, tmp_path):
     """Rounded first, then the path of the tool's centre: an inner corner keeps R less the tool."""
     text = f"{START}L X+10 Y+10 RL\nL X+60\nRND R8\nL Y+60\nL X+80 R0\n"
-    arcs = [m for m in program(text, frame, tmp_path, radii={3: 5.0}).motions if m.arc]
+    arcs = [m for m in part_program(text, frame, tmp_path, radii={3: 5.0}).motions if m.arc]
     k = [frame.chain.axis_index(a) for a in "XY"]
     assert len(arcs) == 1
     np.testing.assert_allclose(arcs[0].arc.centre, [52.0, 18.0])
@@ -333,7 +327,7 @@ def test_a_corner_beside_the_tool(frame, tmp_path):
 
 def test_another_kind_of_cycle_keeps_levels_and_forgets_the_dwell(frame, tmp_path):
     lines = "G21 G17 G90 G94 G98\nG0 X0 Y0 Z20\nG82 X10 Y10 Z-8 R2 P0.5 F200\nG83 X20 Q3\nG80\nM2\n"
-    found = program(lines, frame, tmp_path, "a.ngc")
+    found = part_program(lines, frame, tmp_path, "a.ngc")
     np.testing.assert_allclose(ours(found), [[10.0, 10.0, 2.0, -8.0, 20.0], [20, 10, 2, -8, 20]])
     blocks = [m.cycle.block for m in found.motions if m.cycle and m.cycle.block]
     assert ["P0.5" in block for block in blocks] == [True, False]
@@ -341,7 +335,7 @@ def test_another_kind_of_cycle_keeps_levels_and_forgets_the_dwell(frame, tmp_pat
 
 
 def test_a_call_with_a_height_goes_there_first(frame, tmp_path):
-    found = program(f"{START}{DRILL}L X+20 Y+10 Z+6 FMAX M99\n", frame, tmp_path)
+    found = part_program(f"{START}{DRILL}L X+20 Y+10 Z+6 FMAX M99\n", frame, tmp_path)
     columns = [frame.chain.axis_index(a) for a in "XYZ"]
     assert [20.0, 10.0, 6.0] in [m.end[columns].tolist() for m in found.motions]
     assert len(ours(found)) == 1

@@ -5,11 +5,10 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from bench import LENGTH
+from bench import part_program
 from rs274 import is_there, moves
 
-from matstd.compensation.field import datum_of
-from matstd.compensation.part_programs import Frame, Motion, Paths, read_part_program
+from matstd.compensation.part_programs import Motion, Paths
 from matstd.compensation.programs import compensated
 from matstd.twin.errors import BadFile
 
@@ -17,15 +16,9 @@ R = 5.0
 START = "BEGIN PGM A MM\nTOOL CALL 3 Z S100\nL X+0 Y+0 Z+9 FMAX\nL Z+0 F500\n"
 
 
-@pytest.fixture(scope="module")
-def frame(bench_chain):
-    return Frame(bench_chain, datum_of(bench_chain, {"Z": -200.0}, LENGTH))
-
-
-def program(text, frame, folder, name="a.H", radii=None):
-    path = folder / name
-    path.write_text(text)
-    return read_part_program(path, frame, radii=radii or {3: R})
+def program(*given):
+    """With a tool of 10 mm."""
+    return part_program(*given, radii={3: R})
 
 
 def ends(found):

@@ -4,12 +4,12 @@ import re
 
 import numpy as np
 import pytest
-from bench import LENGTH, oracle_tip
+from bench import LENGTH, oracle_tip, part_program, readings
 from rs274 import is_there, moves
 
 from matstd.cli import main
 from matstd.compensation.field import MachineErrors, State
-from matstd.compensation.part_programs import Keep, read_part_program
+from matstd.compensation.part_programs import Keep
 from matstd.compensation.programs import compensated
 from matstd.compensation.tables import header_of
 from matstd.twin.errors import BadFile, OutsideTravel
@@ -60,19 +60,13 @@ KLARTEXT = """0 BEGIN PGM PART MM
 """
 
 
-def program(text, frame, folder, name="part.ngc"):
-    path = folder / name
-    path.write_text(text)
-    return read_part_program(path, frame)
-
-
 @pytest.fixture(scope="module")
 def done(known, frame, head, tmp_path_factory):
     """Both programs compensated, by their endings."""
     folder = tmp_path_factory.mktemp("programs")
     texts = {"part.ngc": GCODE, "part.H": KLARTEXT}
     return {
-        name: compensated(program(text, frame, folder, name), known, head, TOLERANCE)
+        name: compensated(part_program(text, frame, folder, name), known, head, TOLERANCE)
         for name, text in texts.items()
     }
 
@@ -90,12 +84,8 @@ def coordinates(text):
 
 def actual(xyzbc, frame):
     """Where the second model's tool point is, seen from the datum as the machine finds it."""
-    chain, zero = frame.chain, frame.datum.q
-    q = np.zeros((len(xyzbc), len(chain.axes)))
-    for column, axis in enumerate("XYZBC"):
-        k = chain.axis_index(axis)
-        q[:, k] = xyzbc[:, column] * (DEG if axis in "BC" else 1.0) + zero[k] * (axis in "XYZ")
-    return oracle_tip(q, chain) - oracle_tip(zero[None], chain)
+    zero = oracle_tip(frame.datum.q[None], frame.chain)
+    return oracle_tip(readings(xyzbc, frame), frame.chain) - zero
 
 
 # --- reading ----------------------------------------------------------------------------------
@@ -104,7 +94,7 @@ def actual(xyzbc, frame):
 @is_there
 def test_linuxcnc_reads_the_same_motions(frame, tmp_path):
     """Ends, planes, centres, senses and turns of every motion, inches and steps included."""
-    motions = program(GCODE, frame, tmp_path).motions
+    motions = part_program(GCODE, frame, tmp_path, "a.ngc").motions
     theirs = moves(GCODE, tmp_path, PROBE)[1:]
     # the first stands still in X and Y, and is no motion of ours
     assert len(motions) == len(theirs)
@@ -132,8 +122,8 @@ def test_linuxcnc_reads_the_same_motions(frame, tmp_path):
 
 
 def test_klartext_is_the_same_geometry(frame, tmp_path):
-    g = program(GCODE, frame, tmp_path).motions
-    h = program(KLARTEXT, frame, tmp_path, "part.H").motions
+    g = part_program(GCODE, frame, tmp_path, "a.ngc").motions
+    h = part_program(KLARTEXT, frame, tmp_path, "part.H").motions
     for a, b in zip(g[:6], h[:6], strict=True):
         np.testing.assert_allclose(a.end, b.end, atol=1e-12)
         assert (a.arc is None) == (b.arc is None)
@@ -174,17 +164,17 @@ def test_klartext_is_the_same_geometry(frame, tmp_path):
 def test_what_is_not_understood_is_named_with_its_line(frame, tmp_path, name, block, said):
     start = {"a.ngc": "G54 G0 X0 Y0 Z9\nG1 X1 F9\n", "a.H": "BEGIN PGM A MM\nL X+0 Y+0 Z+9 FMAX\n"}
     with pytest.raises(BadFile, match="line 3: ") as refused:
-        program(start[name] + block + "\n", frame, tmp_path, name)
+        part_program(start[name] + block + "\n", frame, tmp_path, name)
     assert said in str(refused.value)
 
 
 def test_feeds_travels_and_endings(frame, tmp_path):
     with pytest.raises(BadFile, match="line 2: found a motion without feed"):
-        program("G0 X0 Y0 Z0\nG1 X5\n", frame, tmp_path)
+        part_program("G0 X0 Y0 Z0\nG1 X5\n", frame, tmp_path, "a.ngc")
     with pytest.raises(BadFile, match=r"line 1: found Y at a reading of 400.000, expected -300"):
-        program("G0 X0 Y400 Z0\n", frame, tmp_path)
+        part_program("G0 X0 Y400 Z0\n", frame, tmp_path, "a.ngc")
     with pytest.raises(BadFile, match=r"found .txt, expected one of .h, .ngc"):
-        program("G0 X0\n", frame, tmp_path, "part.txt")
+        part_program("G0 X0\n", frame, tmp_path, "part.txt")
 
 
 # --- compensating -----------------------------------------------------------------------------
@@ -261,7 +251,7 @@ def test_words_stay_with_their_motion(done):
 def test_coarser_is_shorter(known, frame, head, tmp_path):
     """Chords go with the root of the tolerance."""
     text = "G0 X0 Y0 Z0\nG1 X1 F100\nG2 X1 Y0 I30 J0\n"
-    part = program(text, frame, tmp_path)
+    part = part_program(text, frame, tmp_path, "a.ngc")
     fine, coarse = (len(compensated(part, known, head, t * UM).motion) for t in (0.5, 8.0))
     assert 3.0 < fine / coarse < 5.0
 
@@ -270,7 +260,9 @@ def test_a_periodic_error_is_followed(bench_chain, frame, head, tmp_path):
     """A pitch error of 40 mm: the line of 200 mm is divided far below the period."""
     effect = parse_effect("geometric(EXX,sinusoidal,20)", bench_chain)
     errors = MachineErrors.of_errors(bench_chain, [(effect, np.array([20 * UM]))])
-    found = compensated(program("G0 X0 Y0 Z0\nG1 X200 F100\n", frame, tmp_path), errors, head)
+    found = compensated(
+        part_program("G0 X0 Y0 Z0\nG1 X200 F100\n", frame, tmp_path, "a.ngc"), errors, head
+    )
     x = found.q[:, bench_chain.axis_index("X")] + found.added[:, bench_chain.axis_index("X")]
     fine = np.linspace(1.0, 199.0, 4001)
     true_x = fine + 20 * UM * np.sin(2 * np.pi * 20 * (fine + 400) / 800)
@@ -285,7 +277,7 @@ def test_a_periodic_error_is_followed(bench_chain, frame, head, tmp_path):
 def test_reversal_is_taken_up_on_both_sides(bench_chain, frame, head, tmp_path):
     backlash = parse_effect("backlash(X)", bench_chain)
     errors = MachineErrors.of_errors(bench_chain, [(backlash, np.array([8 * UM]))])
-    part = program("G0 X0 Y0 Z0\nG1 X10 F100\nG1 Y5\nG1 X0\n", frame, tmp_path)
+    part = part_program("G0 X0 Y0 Z0\nG1 X10 F100\nG1 Y5\nG1 X0\n", frame, tmp_path, "a.ngc")
     found = compensated(part, errors, head)
     last = [np.flatnonzero(found.motion == k)[-1] for k in (1, 2, 3)]
     added = found.added[last, bench_chain.axis_index("X")]
@@ -299,7 +291,7 @@ def test_growth_goes_on_while_the_program_runs(bench_chain, frame, tmp_path, dat
     errors = MachineErrors.of_errors(bench_chain, [(effect, np.array([50 * UM]))], state)
     text = "G0 X0 Y0 Z0\nG1 X100 F5\nG1 X0\n"  # twenty minutes each
     head = header_of(bench_chain, "0123456789ab", datum, state)
-    found = compensated(program(text, frame, tmp_path), errors, head)
+    found = compensated(part_program(text, frame, tmp_path, "a.ngc"), errors, head)
     np.testing.assert_allclose(found.elapsed[-1], 2400.0, rtol=1e-3)
     grown = 50 * UM * (np.exp(-600.0 / effect.tau) - np.exp(-3000.0 / effect.tau))
     z = bench_chain.axis_index("Z")
@@ -310,7 +302,7 @@ def test_what_leaves_its_travel_is_refused(known, bench_chain, frame, head, tmp_
     far = MachineErrors.of_errors(
         bench_chain, [(parse_effect("geometric(EXX,linear)", bench_chain), np.array([-1.0]))]
     )
-    part = program("G0 X0 Y0 Z0\nG1 X400 F100\n", frame, tmp_path)
+    part = part_program("G0 X0 Y0 Z0\nG1 X400 F100\n", frame, tmp_path, "a.ngc")
     with pytest.raises(OutsideTravel, match="line 2: compensated, X leaves its travel"):
         compensated(part, far, head)
 

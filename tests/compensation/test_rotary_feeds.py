@@ -8,10 +8,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from bench import part_program
 from control import AXES, AXIS, INI, a_user, run_linuxcnc
 from rs274 import interpreted, is_there
 
-from matstd.compensation.part_programs import read_part_program
 from matstd.compensation.programs import compensated
 from matstd.twin.errors import BadFile
 from matstd.twin.units import UM
@@ -76,9 +76,7 @@ SECONDS = {
 @pytest.fixture
 def corrected(known, frame, head, tmp_path):
     def of(text, name="part.ngc", tolerance=1.0 * UM):
-        path = tmp_path / name
-        path.write_text(text)
-        return compensated(read_part_program(path, frame), known, head, tolerance)
+        return compensated(part_program(text, frame, tmp_path, name), known, head, tolerance)
 
     return of
 
