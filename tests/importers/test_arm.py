@@ -75,11 +75,22 @@ def written(tmp_path, places, q, decimal=","):
     return tmp_path / "log.csv"
 
 
+def arm_of(tmp_path, q, *more):
+    """Chain and turned flange of the table of parameters."""
+    (tmp_path / "ur5.csv").write_text(UR5)
+    return arm_from_dh(read_sheet(tmp_path / "ur5.csv"), q, *more)
+
+
+def words(tmp_path):
+    """The command that makes a run of the log."""
+    log, dh, out = (str(tmp_path / name) for name in ("log.csv", "ur5.csv", "run.csv"))
+    return ["import", log, "--arm", "--dh", dh, "--u-um", "5", "-o", out]
+
+
 @pytest.mark.parametrize("modified", [False, True])
 def test_the_chain_of_a_table_of_parameters_is_the_arm(tmp_path, modified):
-    (tmp_path / "ur5.csv").write_text(UR5)
     q = poses()
-    chain, turned = arm_from_dh(read_sheet(tmp_path / "ur5.csv"), q, modified)
+    chain, turned = arm_of(tmp_path, q, modified)
     T = table_to_tool(chain, q)
     for k, row in enumerate(q):
         expected = by_hand(row, modified)
@@ -94,7 +105,7 @@ def test_tracker_and_reflector_are_found_wherever_they_are(tmp_path):
     sheet = read_sheet(written(tmp_path, seen(q), q))
     table = read_arm(sheet)
     assert table.joints[0] == "J1 [deg]"
-    chain, turned = arm_from_dh(read_sheet(tmp_path / "ur5.csv"), table.q)
+    chain, turned = arm_of(tmp_path, table.q)
     run = tracker_run(table, chain, 5.0 * UM)
     np.testing.assert_allclose(run.touches.target[0], turned @ REFLECTOR, atol=1e-5)
     assert np.abs(run.deviation).max() < 1e-5
@@ -109,7 +120,7 @@ def test_a_reflector_on_either_side_of_the_flange_is_written_and_read(tmp_path, 
     monkeypatch.setitem(globals(), "REFLECTOR", side * REFLECTOR)
     q = poses()
     sheet = read_sheet(written(tmp_path, seen(q), q))
-    chain, turned = arm_from_dh(read_sheet(tmp_path / "ur5.csv"), q)
+    chain, turned = arm_of(tmp_path, q)
     run = tracker_run(read_arm(sheet), chain, 5.0 * UM)
     write_run(tmp_path / "run.csv", run, "none.toml")
     again = read_run(tmp_path / "run.csv", chain)
@@ -125,7 +136,7 @@ def test_sign_of_an_arm_that_is_too_long(tmp_path):
     """
     q = poses()
     sheet = read_sheet(written(tmp_path, seen(q, 1.00002), q))
-    chain, turned = arm_from_dh(read_sheet(tmp_path / "ur5.csv"), q)
+    chain, turned = arm_of(tmp_path, q)
     run = tracker_run(read_arm(sheet), chain, 5.0 * UM, turned @ REFLECTOR)
     middle = run.touches.point.reshape(-1, 3, 3)[:, 0]
     outwards = middle - middle.mean(axis=0)
@@ -136,10 +147,8 @@ def test_sign_of_an_arm_that_is_too_long(tmp_path):
 
 def test_the_command_makes_run_and_machine(tmp_path, capsys):
     q = poses()
-    table = written(tmp_path, seen(q), q)
-    out = tmp_path / "run.csv"
-    words = ["import", str(table), "--arm", "--dh", str(tmp_path / "ur5.csv"), "--u-um", "5"]
-    assert main([*words, "-o", str(out)]) == 0
+    table, out = written(tmp_path, seen(q), q), tmp_path / "run.csv"
+    assert main(words(tmp_path)) == 0
     said = " ".join(capsys.readouterr().out.split())
     assert "J1 [deg] is C, J2 [deg] is B" in said
     assert "believed - measured" in said
@@ -167,7 +176,7 @@ def test_what_is_no_arm_is_refused(tmp_path):
     with pytest.raises(BadFile, match="every joint once"):
         read_arm(read_sheet(table))
     table.write_text(text.replace("X [mm]", "X [mm];X cmd [mm]"))
-    chain, _ = arm_from_dh(read_sheet(tmp_path / "ur5.csv"), q)
+    chain, _ = arm_of(tmp_path, q)
     table.write_text("\n".join(text.splitlines()[:5]) + "\n")
     sheet = read_sheet(table)
     with pytest.raises(DesignError, match="4 poses, expected 6"):
@@ -193,7 +202,7 @@ def several(tmp_path, q, coupling=0.0):
 
 def test_several_reflectors_with_torques_and_loads_are_one_run(tmp_path):
     table = read_arm(several(tmp_path, poses()))
-    chain, turned = arm_from_dh(read_sheet(tmp_path / "ur5.csv"), table.q)
+    chain, turned = arm_of(tmp_path, table.q)
     run = tracker_run(table, chain, 5.0 * UM)
     t = run.touches
     assert len(run) == 6 * POSES - 3
@@ -221,8 +230,7 @@ def test_a_joint_that_counts_from_another_link_is_named(tmp_path, capsys, coupli
     The other way round 172 mm are left of places that spread by 323: no run is made of that.
     """
     several(tmp_path, poses(), coupling)
-    log, dh, out = (str(tmp_path / name) for name in ("log.csv", "ur5.csv", "run.csv"))
-    arguments = ["import", log, "--arm", "--dh", dh, "--u-um", "5", "-o", out]
+    arguments = words(tmp_path)
     assert main(arguments) == code
     said = capsys.readouterr()
     assert expected in (said.err if code else said.out)
@@ -235,16 +243,13 @@ def test_a_joint_that_counts_from_another_link_is_named(tmp_path, capsys, coupli
 
 def test_a_coupling_of_joints_that_are_not_there_is_refused(tmp_path, capsys):
     several(tmp_path, poses())
-    log, dh, out = (str(tmp_path / name) for name in ("log.csv", "ur5.csv", "run.csv"))
-    arguments = ["import", log, "--arm", "--dh", dh, "--u-um", "5", "-o", out]
-    assert main([*arguments, "--coupled", "J7+J2"]) == BAD
+    assert main([*words(tmp_path), "--coupled", "J7+J2"]) == BAD
     assert "--coupled J7+J2: expected two of 6 joints such as J3+J2" in capsys.readouterr().err
 
 
 def test_the_order_of_the_rows_gives_times_where_the_user_says_so(tmp_path, capsys):
     several(tmp_path, poses())
-    log, dh, out = (str(tmp_path / name) for name in ("log.csv", "ur5.csv", "run.csv"))
-    arguments = ["import", log, "--arm", "--dh", dh, "--u-um", "5", "-o", out, "--in-order"]
+    arguments = [*words(tmp_path), "--in-order"]
     assert main([*arguments, "30"]) == 0
     run = read_run(tmp_path / "run.csv", read_machine(tmp_path / "run.machine.toml"))
     np.testing.assert_array_equal(np.unique(run.touches.time), 30.0 * np.arange(POSES))
@@ -252,6 +257,7 @@ def test_the_order_of_the_rows_gives_times_where_the_user_says_so(tmp_path, caps
     np.testing.assert_array_equal(np.diff(t.time) > 0.0, np.diff(t.pose) != 0)
     assert main([*arguments, "0", "--force"]) == BAD
     assert "--in-order 0: expected seconds" in capsys.readouterr().err
+    log, out = (str(tmp_path / name) for name in ("log.csv", "run.csv"))
     kind = ["import", log, "--positioning", "X", "--u-um", "5", "-o", out, "--in-order", "30"]
     assert main([*kind, "--target", "x1", "--actual", "x2", "--force"]) == BAD
     assert "--in-order: expected with --arm" in capsys.readouterr().err
@@ -261,7 +267,7 @@ def refused(tmp_path, q, places):
     """What a table of poses is refused with."""
     sheet = read_sheet(written(tmp_path, places, q))
     table = read_arm(sheet)
-    chain, _ = arm_from_dh(read_sheet(tmp_path / "ur5.csv"), table.q)
+    chain, _ = arm_of(tmp_path, table.q)
     with pytest.raises(NotEnoughData) as refusal:
         tracker_run(table, chain, 5.0 * UM)
     return str(refusal.value)
@@ -292,9 +298,7 @@ def test_a_path_with_one_orientation_does_not_say_where_the_reflector_sits(tmp_p
     assert "the reflector along every direction of the tool frame" in message
     assert "a turn of the tracker about X of the table frame" in message
     assert "--reflector X Y Z" in message
-    table, dh, out = (str(tmp_path / name) for name in ("log.csv", "ur5.csv", "run.csv"))
-    words = ["import", table, "--arm", "--dh", dh, "--u-um", "5", "-o", out]
-    assert main(words) == BAD
+    assert main(words(tmp_path)) == BAD
     assert "the reflector along every direction" in capsys.readouterr().err
     assert not (tmp_path / "run.csv").exists()
 
@@ -314,8 +318,7 @@ def test_a_turn_of_one_joint_says_how_far_from_its_line_the_reflector_is(tmp_pat
     """
     q = np.tile(poses()[1], (20, 1))
     q[:, 5] = np.linspace(-2.0, 2.0, 20)
-    (tmp_path / "ur5.csv").write_text(UR5)
-    _, turned = arm_from_dh(read_sheet(tmp_path / "ur5.csv"), q)
+    _, turned = arm_of(tmp_path, q)
     message = refused(tmp_path, q, seen(q))
     number = r"(-?\d\.\d\d)"
     triple = rf"\({number}, {number}, {number}\)"
@@ -332,7 +335,7 @@ def test_a_stated_reflector_on_a_line_leaves_a_turn_about_it(tmp_path):
     q = on_a_line()
     sheet = read_sheet(written(tmp_path, seen(q), q))
     table = read_arm(sheet)
-    chain, turned = arm_from_dh(read_sheet(tmp_path / "ur5.csv"), table.q)
+    chain, turned = arm_of(tmp_path, table.q)
     with pytest.raises(NotEnoughData) as refusal:
         tracker_run(table, chain, 5.0 * UM, turned @ REFLECTOR)
     said = str(refusal.value)
@@ -343,9 +346,8 @@ def test_places_of_another_arm_are_refused_with_what_is_left(tmp_path, capsys):
     """Places that have nothing to do with the readings: a tracker sees 1 m of scatter."""
     q = poses()
     places = 1000.0 * np.random.default_rng(8).normal(size=(len(q), 3))
-    table = written(tmp_path, places, q)
-    words = ["import", str(table), "--arm", "--dh", str(tmp_path / "ur5.csv"), "--u-um", "5"]
-    assert main([*words, "-o", str(tmp_path / "run.csv")]) == BAD
+    written(tmp_path, places, q)
+    assert main(words(tmp_path)) == BAD
     assert "mm rms are left of measured places that spread by" in capsys.readouterr().err
 
 
@@ -368,9 +370,9 @@ def test_a_column_z_is_not_a_column_Z(tmp_path, capsys):
     rows += [",".join(f"{v:.9f}" for v in (*r, r[0], r[1], r[2] * 1.0001)) for r in q]
     (tmp_path / "log.csv").write_text("\n".join(rows) + "\n")
     (tmp_path / "gantry.toml").write_text(MACHINE)
-    words = ["import", str(tmp_path / "log.csv"), "--arm", "--machine"]
-    words += [str(tmp_path / "gantry.toml"), "--u-um", "5", "--reflector", "0", "0", "0"]
-    assert main([*words, "-o", str(tmp_path / "run.csv")]) == 0
+    command = ["import", str(tmp_path / "log.csv"), "--arm", "--machine"]
+    command += [str(tmp_path / "gantry.toml"), "--u-um", "5", "--reflector", "0", "0", "0"]
+    assert main([*command, "-o", str(tmp_path / "run.csv")]) == 0
     run = read_run(tmp_path / "run.csv", read_machine(tmp_path / "gantry.toml"))
     along = run.touches.normal[:, 2] > 0.5
     slope = np.polyfit(run.touches.reading("Z")[along], run.deviation[along], 1)[0]
@@ -384,7 +386,7 @@ def test_two_columns_of_places_without_names_are_refused(tmp_path):
     text = table.read_text(encoding="cp1252").splitlines()
     doubled = [text[0] + ";x [mm];y [mm];z [mm]", *(line + ";1,0;2,0;3,0" for line in text[1:])]
     table.write_text("\n".join(doubled) + "\n", encoding="cp1252")
-    chain, _ = arm_from_dh(read_sheet(tmp_path / "ur5.csv"), q)
+    chain, _ = arm_of(tmp_path, q)
     sheet = read_sheet(table)
     with pytest.raises(BadFile, match=r"'Z \[mm\]'.*'z \[mm\]'.*one column of measured x, y, z"):
         tracker_run(read_arm(sheet), chain, 5.0 * UM)

@@ -60,6 +60,12 @@ def written(tmp_path, q, place, columns):
     return read_sheet(tmp_path / "log.csv")
 
 
+def words(tmp_path):
+    """The command that makes a run of the log."""
+    log, dh, out = (str(tmp_path / n) for n in ("log.csv", "dh.csv", "run.csv"))
+    return ["import", log, "--arm", "--dh", dh, "--u-um", "10", "-o", out]
+
+
 def quaternion(turn):
     x, y, z, w = turn.as_quat().T
     return {"qw": w, "qx": x, "qy": y, "qz": z}
@@ -147,11 +153,9 @@ def test_orientations_that_are_not_those_of_the_arm_are_refused(tmp_path, capsys
     q = joints()
     place, turn = seen(q)
     written(tmp_path, q, place, quaternion(turn.inv()))
-    log, dh, out = (str(tmp_path / n) for n in ("log.csv", "dh.csv", "run.csv"))
-    words = ["import", log, "--arm", "--dh", dh, "--u-um", "10", "-o", out]
-    assert main([*words, "--u-urad", "40"]) == BAD
+    assert main([*words(tmp_path), "--u-urad", "40"]) == BAD
     assert "if they are inverted" in capsys.readouterr().err
-    assert main(words) == 0
+    assert main(words(tmp_path)) == 0
     assert "--u-urad states their standard uncertainty" in capsys.readouterr().out
     sheet = written(tmp_path, q, place, {n: 2.0 * v for n, v in quaternion(turn).items()})
     with pytest.raises(BadFile, match="a quaternion of length 2, expected 1"):
@@ -218,8 +222,7 @@ def test_an_arm_of_twelve_joints(tmp_path):
         ",".join(f"{v:.10f}" for v in row) for row in np.column_stack([q / DEG, place]).tolist()
     ]
     (tmp_path / "log.csv").write_text("\n".join(text) + "\n")
-    log, dh, out = (str(tmp_path / n) for n in ("log.csv", "dh.csv", "run.csv"))
-    assert main(["import", log, "--arm", "--dh", dh, "--u-um", "10", "-o", out]) == 0
+    assert main(words(tmp_path)) == 0
     machine = read_machine(tmp_path / "run.machine.toml")
     assert len(machine.programmed_axes) == 12
     for axis in machine.programmed_axes:
@@ -249,13 +252,13 @@ def test_a_stated_travel_stands_in_the_machine_file(tmp_path, capsys):
         f"{100 * k},{k},{k - 1}\n" for k in range(5)
     )
     (tmp_path / "x.csv").write_text(text, encoding="utf-8")
-    words = ["import", str(tmp_path / "x.csv"), "--positioning", "X", "--u-um", "0.3", "--force"]
-    words += ["-o", str(tmp_path / "run.csv")]
-    assert main([*words, "--travel", "X", "-20", "620"]) == 0
+    command = ["import", str(tmp_path / "x.csv"), "--positioning", "X", "--u-um", "0.3", "--force"]
+    command += ["-o", str(tmp_path / "run.csv")]
+    assert main([*command, "--travel", "X", "-20", "620"]) == 0
     assert read_machine(tmp_path / "run.machine.toml").link("X").range == (-20.0, 620.0)
-    assert main([*words, "--travel", "X", "0", "350"]) == BAD
+    assert main([*command, "--travel", "X", "0", "350"]) == BAD
     assert "limits about the readings, 0 to 400" in capsys.readouterr().err
-    assert main([*words, "--travel", "Y", "0", "350"]) == BAD
+    assert main([*command, "--travel", "Y", "0", "350"]) == BAD
 
 
 def test_a_machine_that_is_wrong_by_centimetres_is_read(tmp_path):
@@ -265,8 +268,7 @@ def test_a_machine_that_is_wrong_by_centimetres_is_read(tmp_path):
     at = at + 0.02 * at[:, [1, 0, 2]]
     place = TRACKER.apply(at + R.apply(TARGET)) + STANDS
     written(tmp_path, q, place, {})
-    log, dh, out = (str(tmp_path / n) for n in ("log.csv", "dh.csv", "run.csv"))
-    assert main(["import", log, "--arm", "--dh", dh, "--u-um", "10", "-o", out]) == 0
+    assert main(words(tmp_path)) == 0
     run = read_run(tmp_path / "run.csv")
     assert len(run) == 3 * POSES
     assert np.abs(run.deviation).max() > 10.0

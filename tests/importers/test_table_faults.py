@@ -17,22 +17,38 @@ def sheet(folder: Path, text: str):
     return read_sheet(folder / "table.csv")
 
 
-def test_a_number_that_no_instrument_shows_is_refused_with_its_cell(tmp_path) -> None:
-    table = sheet(tmp_path, "Target [mm],1 up [µm]\n0,0.1\n50,1e300\n100,0.3\n")
-    with pytest.raises(BadFile, match=r"line 3, column '1 up \[µm\]': found 1e\+300"):
-        read_positioning(table, "X")
+def joints(table):
+    return arm_from_dh(table, np.zeros((4, 2)))
 
 
-def test_the_number_of_a_cycle_has_no_hundred_digits(tmp_path) -> None:
-    table = sheet(tmp_path, f"Target [mm],{'9' * 100} up [µm]\n0,0.1\n50,0.2\n100,0.3\n")
-    with pytest.raises(BadFile, match="the number of a cycle"):
-        read_positioning(table, "X")
+def log_of_x(table):
+    return read_positioning(table, "X", None, ("motor", "scale"))
 
 
-def test_a_joint_without_its_length_is_refused(tmp_path) -> None:
-    table = sheet(tmp_path, "a,alpha,d,theta\n0,90,89.1,0\n-425,0,,0\n")
-    with pytest.raises(BadFile, match="line 3, column 'd': found nothing"):
-        arm_from_dh(table, np.zeros((4, 2)))
+def along_x(table):
+    return read_positioning(table, "X")
+
+
+@pytest.mark.parametrize(
+    ("text", "read", "expected"),
+    [
+        ("Target [mm],1 up [µm]\n0,0.1\n50,1e300\n100,0.3\n", along_x,
+         r"line 3, column '1 up \[µm\]': found 1e\+300"),
+        (f"Target [mm],{'9' * 100} up [µm]\n0,0.1\n50,0.2\n100,0.3\n", along_x,
+         "the number of a cycle"),
+        ("time [s],motor [mm],scale [mm]\n0,1,\n1,,2\n2,3,\n", log_of_x,
+         "no row with a target and a reading"),
+        ("a,alpha,d,theta\n0,90,89.1,0\n-425,0,,0\n", joints,
+         "line 3, column 'd': found nothing"),
+        ("Zeit;a;b\n31.02.2024 08:00;1;2\n01.03.2024 08:00;1;2\n", lambda table: seconds(table, 0),
+         r"'31.02.2024', expected dates such as"),
+    ],
+)  # fmt: skip
+def test_cells_that_no_measurement_has_are_refused_with_their_place(
+    tmp_path, text, read, expected
+) -> None:
+    with pytest.raises(BadFile, match=expected):
+        read(sheet(tmp_path, text))
 
 
 def test_a_target_that_is_missing_in_a_log_costs_its_row_alone(tmp_path) -> None:
@@ -40,16 +56,10 @@ def test_a_target_that_is_missing_in_a_log_costs_its_row_alone(tmp_path) -> None
     at = [0.0, 1.0, None, 3.0, 4.0, 3.0, None, 1.0, 0.0]
     rows = [f"{k},{'' if v is None else v},{0.0 if v is None else v}" for k, v in enumerate(at)]
     table = sheet(tmp_path, "time [s],motor [mm],scale [mm]\n" + "\n".join(rows) + "\n")
-    test = read_positioning(table, "X", None, ("motor", "scale"))
+    test = log_of_x(table)
     assert test.target.tolist() == [v for v in at if v is not None]
     assert test.direction.tolist() == [0, 1, 1, 1, -1, -1, -1]
     assert test.cycle.tolist() == [1, 1, 1, 1, 2, 2, 2]
-
-
-def test_a_log_without_a_whole_row_is_refused(tmp_path) -> None:
-    table = sheet(tmp_path, "time [s],motor [mm],scale [mm]\n0,1,\n1,,2\n2,3,\n")
-    with pytest.raises(BadFile, match="no row with a target and a reading"):
-        read_positioning(table, "X", None, ("motor", "scale"))
 
 
 def test_a_measured_coordinate_without_its_nominal_one_is_refused(tmp_path) -> None:
@@ -64,9 +74,3 @@ def test_a_measured_coordinate_without_its_nominal_one_is_refused(tmp_path) -> N
     )
     with pytest.raises(BadFile, match="line 3, column 'nominal': found nothing"):
         read_points(sheet(tmp_path, long))
-
-
-def test_a_day_that_no_month_has_is_refused(tmp_path) -> None:
-    table = sheet(tmp_path, "Zeit;a;b\n31.02.2024 08:00;1;2\n01.03.2024 08:00;1;2\n")
-    with pytest.raises(BadFile, match=r"'31.02.2024', expected dates such as"):
-        seconds(table, 0)
