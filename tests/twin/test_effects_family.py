@@ -106,17 +106,11 @@ def test_the_made_up_runs_have_every_kind_of_effect() -> None:
 
 @pytest.mark.parametrize("label", MACHINES)
 def test_names_lead_back_to_the_effect(label: str) -> None:
-    for effect in every(label):
-        assert parse_effect(effect.name, RUNS[label].chain) == effect
-        assert effect.name.split("(")[0] == effect.kind
-
-
-@pytest.mark.parametrize("label", MACHINES)
-def test_names_of_the_ordinary_model_lead_back(label: str) -> None:
-    """Sines with their phase too: a saved model is the model."""
+    """Sines of the ordinary model with their phase too: a saved model is the model."""
     chain = RUNS[label].chain
-    for effect in ordinary_model(chain).effects:
+    for effect in (*every(label), *ordinary_model(chain).effects):
         assert parse_effect(effect.name, chain) == effect
+        assert effect.name.split("(")[0] == effect.kind
 
 
 @pytest.mark.parametrize(("label", "effect"), SOME, ids=NAMES)

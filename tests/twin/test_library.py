@@ -9,7 +9,7 @@ from machines import HSM600U
 
 import matstd.twin.library.catalogue as library
 from matstd.twin.effects.backlash import KIND as BACKLASH
-from matstd.twin.errors import BadFile, DesignError, UnknownAxis, UnknownEffect, UnknownSymbol
+from matstd.twin.errors import BadFile, DesignError, UnknownEffect, UnknownSymbol
 from matstd.twin.model import Kind
 from matstd.twin.record import at_poses
 
@@ -171,11 +171,6 @@ def test_faulty_entry_points_are_named(monkeypatch, value, message) -> None:
     monkeypatch.setattr(library, "entry_points", lambda group: _points(value))
     with pytest.raises(DesignError, match=message):
         library.load_installed_effects()
-
-
-def test_unknown_axes_are_reported_with_what_there_is() -> None:
-    with pytest.raises(UnknownAxis, match="this machine has C, B, X, Y, Z, C1"):
-        HSM600U.axis_index("A")
 
 
 def test_a_file_with_the_rooms_former_names_is_refused_with_the_new(tmp_path) -> None:
