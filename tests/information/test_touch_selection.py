@@ -116,20 +116,28 @@ def test_leaving_out_what_nothing_shows_is_exact():
     assert criterion.value(R.T @ R) == pytest.approx(whole, rel=1e-8)
 
 
-def test_groups_are_chosen_by_what_they_bring_together(case):
-    criterion, W = case
+def chosen_by_loops(criterion, W, group, count):
+    """One group after another, then each once weighed beside all the others."""
+
+    def best(others):
+        left = [k for k in range(10) if k not in others]
+        rows = {k: np.flatnonzero(np.isin(group, [*others, k])) for k in left}
+        return min(left, key=lambda k: value_of(criterion, W, rows[k]))
+
+    chosen = []
+    while len(chosen) < count:
+        chosen.append(best(chosen))
+    for i in range(count):
+        chosen[i] = best(chosen[:i] + chosen[i + 1 :])
+    return chosen
+
+
+@pytest.mark.parametrize("count", [1, 3, 5])
+def test_groups_are_chosen_by_what_they_bring_beside_all_the_others(case, count):
     group = np.arange(60) // 6
-    chosen = best_groups(criterion, W, group, 3, take=6)
-    assert len(set(chosen)) == 3
-    picked = value_of(criterion, W, np.flatnonzero(np.isin(group, chosen)))
-    every = [
-        value_of(criterion, W, np.flatnonzero(np.isin(group, c)))
-        for c in combinations(range(10), 3)
-    ]
-    assert picked < np.quantile(every, 0.05)
-    first = best_groups(criterion, W, group, 1, take=6)[0]
-    single = [value_of(criterion, W, np.flatnonzero(group == k)) for k in range(10)]
-    assert single[first] == pytest.approx(min(single), rel=ROUNDING)
+    for _ in range(3):
+        assert best_groups(*case, group, count, take=6) == chosen_by_loops(*case, group, count)
+        group = np.random.default_rng(count).permutation(group)
 
 
 def test_groups_that_do_not_fit_are_not_put_together(case):

@@ -129,6 +129,18 @@ def test_every_axis_has_a_body_and_its_letter(path):
         assert np.ptp(points @ link.direction) >= np.ptp(link.range)
 
 
+def test_bearings_stand_on_a_foot_that_nothing_which_swings_reaches():
+    """Whatever the angle of a cradle, 15 mm are left between it and the foot."""
+    chain = read_machine(HSM)
+    bodies, _ = chain_bodies(chain, LENGTH)
+    link = chain.link("B")
+    off = {on: [b.corners.reshape(-1, 3) - link.point for b in bodies if b.on == on] for on in "BX"}
+    swing = np.linalg.norm(np.cross(np.concatenate(off["B"]), link.direction), axis=1).max()
+    levels = np.concatenate(off["X"])[:, 2]
+    assert np.isclose(levels, -(swing + 15.0)).any()
+    assert not ((levels < -swing) & (levels > -swing - 14.0)).any()
+
+
 def test_bodies_of_an_arm_are_drums_and_tubes(tmp_path):
     text = 'format = "machine/1"\nname = "arm"\nchain = "[w f C A A2 C2 A3 t]"\n[axis.C]\n'
     text += "range = [-180, 180]\n"
