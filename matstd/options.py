@@ -5,9 +5,9 @@ from __future__ import annotations
 import argparse
 import math
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from matstd.twin.errors import DesignError
 
@@ -29,32 +29,68 @@ SHEET_FILES = (
 """Of it and of the programs, what not every run leaves."""
 
 
-Option = str | tuple[str, str | float | Sequence[str] | type[int] | type[float]]
-"""Meaning of an option for the help; in a pair also what it takes."""
+Kind = type | str | float | Sequence[str] | Sequence[float]
+"""What an argument takes, as `add_options` explains."""
+
+Options = dict[str, str | tuple[str, Kind]]
+"""Arguments with their meanings for the help, and in a pair what they take."""
 
 
-def add_options(parser: argparse._ActionsContainer, options: Mapping[str, Option]) -> None:
-    """Options as the help lists them: `--name` is a switch, `--name WORD` takes a word.
+class Required(NamedTuple):
+    """An option that has to be given."""
 
-    In a pair, `int` or `float` is the type of a number; a number or a word is what holds without
-    the option; of several words one is chosen, the first without the option.
+    about: str
+    kind: Kind = str
+
+
+def add_options(parser: argparse._ActionsContainer, options: Options) -> None:
+    """Arguments as the help lists them.
+
+    `--name` is a switch, `--name WORD` takes a word and `--name X Y Z` three; `--name WORD ...`
+    takes one or more, and again where it is given again. `name WORD` is positional, and may be left
+    out in brackets.
+
+    In a pair, `int` or `float` is the type of a number, and `list` that of an option that may be
+    repeated. A number, several numbers or a word hold without the option; of several words one is
+    chosen, the first without the option.
     """
-    for words, meaning in options.items():
-        name, _, metavar = words.partition(" ")
+    for form, meaning in options.items():
         about, kind = (meaning, None) if isinstance(meaning, str) else meaning
-        more: dict[str, Any] = {"metavar": metavar or None}
-        if isinstance(kind, type):
-            more["type"] = kind
-        elif isinstance(kind, str | int | float):
-            more |= {"type": type(kind), "default": kind}
-        elif kind is not None:
-            more |= {"choices": kind, "default": kind[0]}
-        elif not metavar:
-            more = {"action": "store_true"}
-        parser.add_argument(name, help=about, **more)
+        words = form.split()
+        flags = [word for word in words if word.startswith("-")]
+        more = _taken(words[len(flags) or 1 :], kind, is_option=bool(flags))
+        if isinstance(meaning, Required):
+            more["required"] = True
+        parser.add_argument(*(flags or words[:1]), help=about, **more)
 
 
-def add_output(parser: argparse.ArgumentParser, name: str = "OUT", force: str = "") -> None:
+def _taken(shown: Sequence[str], kind: Kind | None, is_option: bool) -> dict[str, Any]:
+    """What an argument takes, in the words of argparse."""
+    if not shown and kind is None and is_option:
+        return {"action": "store_true"}
+    names = tuple(word.strip("[]") for word in shown if word != "...")
+    may_lack, is_open = "[" in "".join(shown), "..." in shown
+    more: dict[str, Any] = {"metavar": names if len(names) > 1 else "".join(names) or None}
+    if is_open and is_option:
+        more |= {"action": "extend", "nargs": "+", "default": []}
+    elif is_open or may_lack:
+        more["nargs"] = "?" if not is_open else "*" if may_lack else "+"
+    elif len(names) > 1:
+        more["nargs"] = len(names)
+    if kind is list:
+        more |= {"action": "append", "default": []}
+    elif isinstance(kind, type):
+        more["type"] = kind
+    elif isinstance(kind, str | int | float):
+        more |= {"type": type(kind), "default": kind}
+    elif kind is not None and isinstance(kind[0], str):
+        more |= {"choices": kind, "default": kind[0] if is_option else None}
+    elif kind is not None:
+        more |= {"type": float, "default": kind}
+    return more
+
+
+def output(name: str = "OUT", force: str = "") -> Options:
     """The options -o and --force.
 
     Args:
@@ -62,41 +98,55 @@ def add_output(parser: argparse.ArgumentParser, name: str = "OUT", force: str = 
         force: Help of --force where it is not the usual.
     """
     is_folder = name == "OUT"
-    meaning = "output folder" if is_folder else "output file"
     usual = "replace results of an earlier run" if is_folder else "overwrite an existing output"
-    parser.add_argument("-o", "--output", metavar=name, required=True, help=meaning)
-    parser.add_argument("--force", action="store_true", help=force or usual)
+    return {
+        f"-o --output {name}": Required("output folder" if is_folder else "output file"),
+        "--force": force or usual,
+    }
 
 
-def add_several(parser: argparse.ArgumentParser, option: str, word: str, meaning: str) -> None:
-    """An option with one or more words, which may be given more than once."""
-    parser.add_argument(option, metavar=word, action="extend", nargs="+", default=[], help=meaning)
+EFFECTS: Options = {"--effects FILE.py": ("file with your own effects; may be repeated", list)}
+
+PDF: Options = {"--pdf": "also print the report to report.pdf (needs WeasyPrint or a browser)"}
+
+RESULTS: Options = {
+    **EFFECTS,
+    "--standard FILE": "what was probed, drawn on the page: STANDARD.toml, or a drawing in the "
+    "frame of the standard (.stl, .obj, .ply, .step). Default: standard.toml beside the run, if it "
+    "is its",
+    "--no-report": "do not write the report page and its figures",
+    **PDF,
+    **output(),
+}
+"""The user's effects, the page and the folder of results."""
 
 
-def add_effects(parser: argparse.ArgumentParser) -> None:
-    """The option --effects."""
-    parser.add_argument(
-        "--effects",
-        metavar="FILE.py",
-        action="append",
-        default=[],
-        help="file with your own effects; may be repeated",
-    )
-
-
-def add_body(parser: argparse.ArgumentParser, meaning: str) -> None:
+def body(meaning: str) -> Options:
     """Options that state the temperature of the standard."""
-    add_options(
-        parser,
-        {
-            "--body-degC T": (meaning, float),
-            "--body-u-K U": (
-                "standard uncertainty of the temperature of the standard, K (0.3 if the "
-                "temperature is stated; otherwise 2, about 20 °C)",
-                float,
-            ),
-        },
-    )
+    return {
+        "--body-degC T": (meaning, float),
+        "--body-u-K U": (
+            "standard uncertainty of the temperature of the standard, K (0.3 if the temperature is "
+            "stated; otherwise 2, about 20 °C)",
+            float,
+        ),
+    }
+
+
+def measured(without: str) -> Options:
+    """What compare, diagnose and learn have in common.
+
+    Args:
+        without: What a command does without a model, for the help.
+    """
+    return {
+        "--model MODEL.toml": f"model of an earlier run; {without}",
+        "--start WHAT": f"starting model: {SETUP} (position of the standard only), {GEOMETRY} (the "
+        "ordinary geometric model, the default) or MODEL.toml (as --model)",
+        "--pitch AXIS=MM ...": "pitch of the screw or scale of an axis; the search for periodic "
+        "errors includes it and its whole fractions and prefers it to similar periods",
+        **RESULTS,
+    }
 
 
 def seen_from(folder: Path, file: str | Path) -> str:
@@ -104,50 +154,13 @@ def seen_from(folder: Path, file: str | Path) -> str:
     return Path(os.path.relpath(file, folder.resolve())).as_posix()
 
 
-def add_measured(parser: argparse.ArgumentParser, without: str) -> None:
-    """What compare and diagnose have in common.
-
-    Args:
-        without: What it does without a model, for the help.
-    """
-    add_start(parser, without)
-    add_pitch(parser)
-    add_results(parser)
-
-
-def add_results(parser: argparse.ArgumentParser) -> None:
-    """The user's effects, the page and the folder of results."""
-    add_effects(parser)
-    add_options(
-        parser,
-        {
-            "--standard FILE": "what was probed, drawn on the page: STANDARD.toml, or a drawing "
-            "in the frame of the standard (.stl, .obj, .ply, .step). Default: standard.toml "
-            "beside the run, if it is its",
-            "--no-report": "do not write the report page and its figures",
-        },
-    )
-    add_pdf(parser)
-    add_output(parser)
-
-
-def add_pdf(parser: argparse.ArgumentParser) -> None:
-    """The argument `--pdf`."""
-    parser.add_argument(
-        "--pdf",
-        action="store_true",
-        default=None,
-        help="also print the report to report.pdf (needs WeasyPrint or a browser)",
-    )
-
-
-def asked_printer(args: argparse.Namespace) -> Printer | None:
-    """What prints the page, looked for before the work begins; None where no PDF is wanted.
+def asked_printer(pdf: bool) -> Printer | None:
+    """What prints a page, looked for before the work begins; None where no PDF is wanted.
 
     Raises:
         MissingLibrary: It is wanted, and nothing here can print.
     """
-    if not args.pdf:
+    if not pdf:
         return None
     from matstd.report.pages import printer
 
@@ -160,33 +173,6 @@ def print_report(folder: Path, printed_by: Printer | None, name: str = "report")
         from matstd.report.pages import write_pdf
 
         write_pdf(folder / f"{name}.html", folder / f"{name}.pdf", printed_by)
-
-
-def add_start(parser: argparse.ArgumentParser, without: str) -> None:
-    """The options --model and --start.
-
-    Args:
-        without: What it does without a model, for the help.
-    """
-    add_options(
-        parser,
-        {
-            "--model MODEL.toml": f"model of an earlier run; {without}",
-            "--start WHAT": f"starting model: {SETUP} (position of the standard only), {GEOMETRY} "
-            "(the ordinary geometric model, the default) or MODEL.toml (as --model)",
-        },
-    )
-
-
-def add_pitch(parser: argparse.ArgumentParser) -> None:
-    """The option --pitch."""
-    add_several(
-        parser,
-        "--pitch",
-        "AXIS=MM",
-        "pitch of the screw or scale of an axis; the search for periodic errors "
-        "includes it and its whole fractions and prefers it to similar periods",
-    )
 
 
 def starting_model(args: argparse.Namespace) -> str:
@@ -228,5 +214,5 @@ def named_numbers(option: str, words: Sequence[str], expected: str) -> dict[str,
 
 
 def pitches(args: argparse.Namespace) -> dict[str, float]:
-    """Pitches by axis, mm, of the option of `add_pitch`."""
+    """Pitches by axis, mm, of `--pitch`."""
     return named_numbers("--pitch", args.pitch, "an axis and its pitch in mm, such as X=10")

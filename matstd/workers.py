@@ -2,23 +2,20 @@
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
+
+from matstd.options import Options
 
 if TYPE_CHECKING:
     from matstd.sensitivity.montecarlo import Workers
 
 
-def add_scheduler(parser: argparse.ArgumentParser) -> None:
-    """The argument `--scheduler`."""
-    parser.add_argument(
-        "--scheduler",
-        metavar="tcp://HOST:PORT",
-        help="draw the random machines on the workers of this Dask scheduler; the results "
-        "do not change",
-    )
+SCHEDULER: Options = {
+    "--scheduler tcp://HOST:PORT": "draw the random machines on the workers of this Dask "
+    "scheduler; the results do not change"
+}
 
 
 @contextmanager

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from matstd.api.diagnosing import Diagnosis
 from matstd.api.known_errors import drives_stated, machine_errors, with_added, with_unknowns
+from matstd.api.saved import REPORT_FILES
 from matstd.compensation import field
 from matstd.compensation.field import Datum, MachineErrors, Share, State, datum_of, sample_workspace
 from matstd.compensation.part_programs import Frame, Program, read_loads, read_part_program
@@ -57,14 +58,7 @@ from matstd.twin.model import is_saved
 from matstd.twin.record import Touches
 from matstd.twin.units import USUAL_TOOL_LENGTH, doubtful_length
 
-SOMETIMES = (
-    "*/*",
-    "report.html",
-    "tables.xlsx",
-    "tables/*.csv",
-    "pictures/*.png",
-    "compensation.json",
-)
+SOMETIMES = ("*/*", *REPORT_FILES, "pictures/*.png", "compensation.json")
 """Files that not every compensation by tables leaves."""
 
 

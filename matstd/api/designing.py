@@ -115,9 +115,9 @@ class Project:
         """
         from matstd.api.saved import REPORT_FILES
         from matstd.compensation.field import MachineErrors
-        from matstd.options import SHEET, SHEET_FILES, print_report
+        from matstd.options import SHEET, SHEET_FILES, asked_printer, print_report
         from matstd.probe_paths.stations import feeds_of
-        from matstd.report.pages import printer, write_design_page
+        from matstd.report.pages import write_design_page
         from matstd.stages.design import design
         from matstd.stages.refusals import REFUSED_REACH, REFUSED_ROOM, refusals
         from matstd.stages.sheets import write_sheets
@@ -126,7 +126,7 @@ class Project:
         from matstd.workers import connected
 
         brief = self.brief if seed is None else replace(self.brief, seed=seed)
-        printed_by = printer() if pdf else None
+        printed_by = asked_printer(pdf)
         leftovers = (*REPORT_FILES, *SHEET_FILES)
         with (
             results_folder(out, force, leftovers, [REFUSED_REACH, REFUSED_ROOM]) as folder,
@@ -165,17 +165,12 @@ class Project:
             scheduler: Address of a Dask scheduler whose workers draw the random machines.
             pdf: Whether the report is printed into report.pdf too.
         """
-        from matstd.api.saved import REPORT_FILES
-        from matstd.options import print_report
-        from matstd.report.pages import printer
+        from matstd.api.saved import REPORT_FILES, page_folder
         from matstd.stages.study_run import study_project
-        from matstd.twin.files import results_folder
         from matstd.workers import connected
 
-        printed_by = printer() if pdf else None
-        with results_folder(out, force, REPORT_FILES) as folder, connected(scheduler) as workers:
+        with page_folder(out, pdf, force, REPORT_FILES) as folder, connected(scheduler) as workers:
             study, remarks = study_project(self.brief, poses, folder, progress, workers)
-            print_report(folder, printed_by)
         return Sensitivities(study, tuple(remarks), Path(out))
 
     def __repr__(self) -> str:

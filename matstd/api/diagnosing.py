@@ -1,7 +1,7 @@
 """What a model leaves of a run and what it lacks: results with files, page and compensation."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -16,6 +16,7 @@ from matstd.api.saved import (
     REPORT_FILES,
     VISIT,
     Saveable,
+    extended,
     next_visit,
     write_found_arm,
     write_learnt,
@@ -216,15 +217,9 @@ def diagnose(
         named = found.steps[len(added)].fit
         laws = learn_remainder(named, found.fit, estimates, is_left=is_left)
         found = found if laws is None else found.with_laws(laws, estimates)
-    known = {f.name: getattr(found, f.name) for f in fields(found)}
-    made: dict[str, Any] = {
-        "before": before,
-        "title": title,
-        "named": len(added),
-        "auto": auto,
-        "body": body,
-    }
-    return Diagnosis(**known, **made)
+    return extended(
+        Diagnosis, found, before=before, title=title, named=len(added), auto=auto, body=body
+    )
 
 
 def named_effects(names: Iterable[str], known: Iterable[Effect], run: Run) -> list[Effect]:
@@ -379,5 +374,4 @@ def compare(
         progress,
         saved.learnt(without_copies(run)) if saved else None,
     )
-    known = {f.name: getattr(found, f.name) for f in fields(found)}
-    return Comparison(**known, saved=saved, title=title, body=body)
+    return extended(Comparison, found, saved=saved, title=title, body=body)

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from matstd.api.saved import REPORT_FILES
 from matstd.diagnosis.drift import (
     DriftRecord,
     Judged,
@@ -40,14 +41,7 @@ from matstd.twin.files import results_folder
 from matstd.twin.frames import Array, IntArray
 from matstd.twin.units import HOUR, MINUTE, UM
 
-SOMETIMES = (
-    "report.html",
-    "tables.xlsx",
-    "tables/*.csv",
-    "pictures/*.png",
-    "thermal.json",
-    "drift.csv",
-)
+SOMETIMES = (*REPORT_FILES, "pictures/*.png", "thermal.json", "drift.csv")
 """Files that not every run leaves."""
 
 HELD_OUT_SHARE = 0.3  # share of a log that is held out where nothing is said

@@ -1,13 +1,21 @@
 """Laws that no library has: learnt from a run, with files, page and an effect of the user's own."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
 from matstd.api.diagnosing import named_effects
 from matstd.api.runs import Runs, StartingModel, read_run, starting_run
-from matstd.api.saved import EFFECT, REPORT_FILES, VISIT, Saveable, next_visit, write_learnt
+from matstd.api.saved import (
+    EFFECT,
+    REPORT_FILES,
+    VISIT,
+    Saveable,
+    extended,
+    next_visit,
+    write_learnt,
+)
 from matstd.api.standards import Probed, probed_body
 from matstd.diagnosis import laws
 from matstd.diagnosis.files import SavedModel, model_text, parsed_model
@@ -137,6 +145,5 @@ def learn(
         task = DiagnosisTask(run, start, prior_for(run, start))
         added = [sized.effect for sized in refined_named(task, added)]
     found = learn_laws(run, Model(start.chain, (*start.effects, *added)))
-    known = {f.name: getattr(found, f.name) for f in fields(found)}
     said = None if other is None or not found.laws else second_run(found, other)
-    return LearntLaws(**known, second=said, title=title, body=body)
+    return extended(LearntLaws, found, second=said, title=title, body=body)

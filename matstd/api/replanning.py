@@ -12,7 +12,7 @@ import numpy as np
 from matstd.api.saved import REPORT_FILES
 from matstd.artefact.body import Standard, read_standard
 from matstd.artefact.reach import DatumBall
-from matstd.options import SHEET, SHEET_FILES
+from matstd.options import SHEET, SHEET_FILES, asked_printer
 from matstd.probe_paths.campaign import (
     VirtualMachine,
     ball_centres,
@@ -42,7 +42,7 @@ from matstd.probe_paths.locate import (
 )
 from matstd.probe_paths.stations import Station, all_programs
 from matstd.report.laws import visit_lines
-from matstd.report.pages import Printer, printer
+from matstd.report.pages import Printer
 from matstd.report.words import located_lines
 from matstd.stages.sheets import write_sheets
 from matstd.twin.display import Displayed
@@ -96,7 +96,7 @@ class Replanned(Displayed):
             pdf: Print the sheet, too.
             force: Replace the results of an earlier run.
         """
-        printed_by = printer() if pdf else None
+        printed_by = asked_printer(pdf)
         with results_folder(folder, force, OURS) as place:
             self.write(place, printed_by)
 

@@ -1,6 +1,6 @@
 """Runs as comparison and diagnosis take them: read, joined, and the model they begin with."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -124,8 +124,11 @@ def listed(runs: Runs) -> list[Run | str]:
 
 def _joined(given: Sequence[Run | str], hold_out: Sequence[str]) -> Run:
     """All runs as one, by their names; those held out are marked so."""
-    names = _names(given)
     paths = [one for one in given if isinstance(one, str)]
+    for path in paths:
+        if paths.count(path) > 1:
+            raise DesignError(f"{path}: given twice, expected every run once")
+    names = names_of(given)
     for name in hold_out:
         if name not in paths and name not in names:
             raise BadArgument("hold_out", name, f"one of {', '.join(names)}")
@@ -146,16 +149,10 @@ def _joined(given: Sequence[Run | str], hold_out: Sequence[str]) -> Run:
     return joined(runs)
 
 
-def _names(given: Sequence[Run | str]) -> list[str]:
-    """Names of files without their endings, with their folders where only those differ.
-
-    Raises:
-        DesignError: A file that is given twice.
-    """
-    for one in given:
-        if isinstance(one, str) and list(given).count(one) > 1:
-            raise DesignError(f"{one}: given twice, expected every run once")
+def names_of(
+    given: Sequence[Run | str], named: Callable[[Path], str] = lambda path: path.stem
+) -> list[str]:
+    """A name for each run; whole paths where the short ones are not unique."""
     paths = [f"run {i}" if isinstance(one, Run) else one for i, one in enumerate(given, start=1)]
-    # "run 1" is its own stem
-    names = [Path(one).stem for one in paths]
+    names = [named(Path(one)) for one in paths]  # "run 1" is its own stem
     return names if len(set(names)) == len(names) else paths

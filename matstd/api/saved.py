@@ -1,10 +1,11 @@
 """Results that leave files and a page in a folder."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import fields
 from pathlib import Path
-from typing import ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 import numpy as np
 
@@ -14,12 +15,16 @@ from matstd.diagnosis.geometry import found_arm
 from matstd.diagnosis.laws import Learning, SecondRun
 from matstd.diagnosis.next_visit import VisitPlan, plan_visit
 from matstd.importers import machine_text
-from matstd.options import print_report
+from matstd.options import asked_printer, print_report
 from matstd.report.laws import effect_text
 from matstd.report.numbers import microns
-from matstd.report.pages import printer
 from matstd.twin.files import results_folder, write_whole
 from matstd.twin.files.whole import write_json
+
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
+
+T = TypeVar("T")
 
 REPORT_FILES = ("report.html", "report.pdf", "tables.xlsx", "tables/*.csv")
 """Files of a page that not every run of a command leaves."""
@@ -29,6 +34,27 @@ EFFECT, LAW, VISIT = "effect.py", "law.json", "next_visit.csv"
 touches that distinguish it from its rivals."""
 
 FOUND = "machine_found.toml"  # machine file of a serial arm with the lines of all joints as found
+
+
+def extended(kind: type[T], record: "DataclassInstance", **more: Any) -> T:
+    """A record of a room below as the door returns it, with what is known here besides."""
+    known = {f.name: getattr(record, f.name) for f in fields(record)}
+    return kind(**known, **more)
+
+
+@contextmanager
+def page_folder(
+    folder: str | Path, pdf: bool, force: bool, sometimes: Sequence[str]
+) -> Iterator[Path]:
+    """A folder of results that appears whole or not at all, its page printed where that is asked.
+
+    Args:
+        sometimes: Files that not every such result leaves.
+    """
+    printed_by = asked_printer(pdf)
+    with results_folder(folder, force, sometimes) as place:
+        yield place
+        print_report(place, printed_by)
 
 
 class Saveable(ABC):
@@ -44,24 +70,16 @@ class Saveable(ABC):
             pdf: Print the page into report.pdf, too.
             force: Replace the results of an earlier run.
         """
-        with self._made(folder, pdf, force) as place:
+        with page_folder(folder, pdf, force, self.sometimes) as place:
             self.write(place)
+            self.write_page(place)
         return Path(folder)
 
     def page(self, folder: str | Path, pdf: bool = False, force: bool = False) -> Path:
         """Write report.html with its pictures and tables into a folder; arguments as of `save`."""
-        with self._made(folder, pdf, force):
-            pass
-        return Path(folder) / "report.html"
-
-    @contextmanager
-    def _made(self, folder: str | Path, pdf: bool, force: bool) -> Iterator[Path]:
-        """A folder that gets the page beside what is written meanwhile, whole or not at all."""
-        printed_by = printer() if pdf else None
-        with results_folder(folder, force, self.sometimes) as place:
-            yield place
+        with page_folder(folder, pdf, force, self.sometimes) as place:
             self.write_page(place)
-            print_report(place, printed_by)
+        return Path(folder) / "report.html"
 
     @abstractmethod
     def write(self, folder: Path) -> str:

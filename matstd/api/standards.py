@@ -1,12 +1,13 @@
 """Standards: read, calibrated, drawn behind their touches; what visits to one say of a task."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
 from matstd.api.runs import Runs, is_learnt_from, listed, read_run
+from matstd.api.saved import extended
 from matstd.artefact import body
 from matstd.artefact.body import Standard, write_standard
 from matstd.artefact.brief import Task, read_task
@@ -160,8 +161,7 @@ def calibrate(
     refusal = ""
     if any(v.is_refused for v in found.verdicts):
         refusal = f"{', '.join(map(str, files))}: {refusal_sentence(found.verdicts, causes)}"
-    known = {f.name: getattr(found, f.name) for f in fields(found)}
-    out = Calibration(**known, refusal=refusal)
+    out = extended(Calibration, found, refusal=refusal)
     if not accept:
         out.check()
     return out

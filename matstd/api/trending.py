@@ -1,14 +1,13 @@
 """What changed on a machine over several runs, and when: control charts, files and page."""
 
 import re
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, fields, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from datetime import datetime
 from pathlib import Path
-from typing import TypeVar
 
-from matstd.api.runs import read_run
-from matstd.api.saved import REPORT_FILES, Saveable
+from matstd.api.runs import names_of, read_run
+from matstd.api.saved import REPORT_FILES, Saveable, extended
 from matstd.diagnosis.charts import (
     MIN_OCCASIONS,
     History,
@@ -36,8 +35,6 @@ _DATE = re.compile(
 """A date in a name, with or without hyphens and time of day: `2031-05-06`, `20310506T0708`."""
 
 _RUN = re.compile(r"#\s*format\s*=\s*.run/")
-
-T = TypeVar("T")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -125,10 +122,10 @@ def trend(
     occasions = dated(made)
     found = history(occasions)
     order = {one.name: path for one, path in zip(occasions, given, strict=True)}
-    known = {f.name: getattr(found, f.name) for f in fields(found)}
     paths = [order[one.name] for one in found.occasions]
-    return Trend(
-        **known,
+    return extended(
+        Trend,
+        found,
         title=title,
         paths=tuple(p for p in paths if isinstance(p, str)),
         left_out=tuple(left_out),
@@ -186,7 +183,7 @@ def _is_model(path: Path) -> bool:
 def _of_runs(given: Sequence[Run | str], add: Sequence[str], progress: Progress) -> list[Occasion]:
     """Runs fitted one after the other."""
     runs = [one if isinstance(one, Run) else read_run(one) for one in given]
-    names = _names(given, lambda path: path.stem)
+    names = names_of(given)
     by_date = sorted(
         zip(names, runs, strict=True), key=lambda one: (str(one[1].date or ""), one[0])
     )
@@ -196,15 +193,8 @@ def _of_runs(given: Sequence[Run | str], add: Sequence[str], progress: Progress)
 
 def _of_models(given: Sequence[Run | str]) -> list[Occasion]:
     """Saved models, by the name of their folder where that is of a diagnosis."""
-    names = _names(given, lambda p: p.parent.name if p.name == MODEL else p.stem)
+    names = names_of(given, lambda p: p.parent.name if p.name == MODEL else p.stem)
     paths = [str(one) for one in given]
     return occasions_of_models(
         {name: read_model(path) for name, path in zip(names, paths, strict=True)}
     )
-
-
-def _names(given: Sequence[Run | str], named: Callable[[Path], str]) -> list[str]:
-    """A name for each; whole paths where the short ones are not unique."""
-    paths = [f"run {i}" if isinstance(one, Run) else one for i, one in enumerate(given, start=1)]
-    short = [named(Path(path)) for path in paths]
-    return short if len(set(short)) == len(short) else paths

@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from matstd.commands.compensation.options import add_model, add_program, add_state
+from matstd.commands.compensation.options import MODEL, PROGRAM, STATE
 from matstd.console import say
 from matstd.options import add_options
 from matstd.twin.errors import DesignError
@@ -18,43 +18,32 @@ if TYPE_CHECKING:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
-    add_model(parser)
     add_options(
         parser,
         {
+            **MODEL,
             "--tables DIR": "write compensation tables of the controls to this folder",
             "--program IN": "part program to compensate (.H, .ngc)",
+            "-o --output OUT": "compensated program",
+            "--tolerance UM": (
+                "largest distance between a path and the line segments that replace it, µm (1)",
+                float,
+            ),
+            **PROGRAM,
+            "--loads LOADS.csv": "process forces by program line, with --program (--load applies "
+            "to the other lines)",
+            "--control NAME": (
+                "write only the tables of this control: iso230, sinumerik, linuxcnc, heidenhain",
+                list,
+            ),
+            "--opposite NAME": (
+                "reverse the sign of the values in the tables of this control",
+                list,
+            ),
+            **STATE,
+            "--force": "replace results of an earlier run",
         },
     )
-    parser.add_argument("-o", "--output", metavar="OUT", help="compensated program")
-    parser.add_argument(
-        "--tolerance",
-        metavar="UM",
-        type=float,
-        help="largest distance between a path and the line segments that replace it, µm (1)",
-    )
-    add_program(parser)
-    parser.add_argument(
-        "--loads",
-        metavar="LOADS.csv",
-        help="process forces by program line, with --program (--load applies to the other lines)",
-    )
-    parser.add_argument(
-        "--control",
-        metavar="NAME",
-        action="append",
-        default=[],
-        help="write only the tables of this control: iso230, sinumerik, linuxcnc, heidenhain",
-    )
-    parser.add_argument(
-        "--opposite",
-        metavar="NAME",
-        action="append",
-        default=[],
-        help="reverse the sign of the values in the tables of this control",
-    )
-    add_state(parser)
-    parser.add_argument("--force", action="store_true", help="replace results of an earlier run")
 
 
 def run(args: argparse.Namespace) -> int:

@@ -4,26 +4,26 @@ from __future__ import annotations
 
 import argparse
 
-from matstd.commands.compensation.options import add_model, add_program, add_state
+from matstd.commands.compensation.options import MODEL, PROGRAM, STATE
 from matstd.console import say
-from matstd.options import add_options, add_output
+from matstd.options import add_options, output
 from matstd.twin.errors import DesignError
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
-    add_model(parser)
-    parser.add_argument("--program", metavar="IN", help="part program (.H, .ngc)")
-    add_program(parser)
     add_options(
         parser,
         {
+            **MODEL,
+            "--program IN": "part program (.H, .ngc)",
+            **PROGRAM,
             "--loads LOADS.csv": "process forces by program line",
             "--poses POSES.csv": "axis readings, one row per pose",
+            **STATE,
+            **output(),
         },
     )
-    add_state(parser)
-    add_output(parser)
 
 
 def run(args: argparse.Namespace) -> int:

@@ -38,7 +38,7 @@ def read_job(args: argparse.Namespace) -> Compensation:
 
 
 def machine_state(args: argparse.Namespace) -> State:
-    """What the options of `add_driven` say of the state of a machine."""
+    """What the options `DRIVEN` say of the state of a machine."""
     return State(
         time=args.after * MINUTE,
         temperature=named_numbers("--temperature", args.temperature, _SUCH_AS),
@@ -49,12 +49,12 @@ def machine_state(args: argparse.Namespace) -> State:
 
 
 def program_options(args: argparse.Namespace) -> ProgramOptions:
-    """What the options of `add_program` say of a part program."""
+    """What the options `PROGRAM` say of a part program."""
     return ProgramOptions(
         tools=_by_tool("--tool", args.tool),
         radii=_by_tool("--tool-radius", args.tool_radius),
         pass_m=args.pass_m,
-        tcp_m=args.tcp_m,
+        tcp_m=args.tcp_m or (),
         loads=args.loads,
     )
 

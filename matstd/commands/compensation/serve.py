@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from matstd.commands.compensation.options import add_model, add_state
+from matstd.commands.compensation.options import MODEL, STATE
 from matstd.console import say
 from matstd.next_steps import next_line
 from matstd.options import add_options
@@ -19,10 +19,10 @@ if TYPE_CHECKING:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
-    add_model(parser)
     add_options(
         parser,
         {
+            **MODEL,
             "--endpoint URL": (
                 "address of the OPC UA server (opc.tcp://localhost:4840: reachable from this "
                 "computer only)",
@@ -30,18 +30,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
             ),
             "--linuxcnc MACHINE.ini": "correct this LinuxCNC on this computer by external "
             "offsets, instead of OPC UA",
+            "--most UM": ("largest correction of an axis, µm (200)", 200.0),
+            "--rate UM_S": ("largest rate of change of a correction, µm/s (1000)", 1000.0),
+            "--patience S": (
+                "time without readings until a correction is marked invalid, s (0.5)",
+                0.5,
+            ),
+            "--hold S": ("time without readings until a correction returns to zero, s (5)", 5.0),
+            **STATE,
         },
     )
-    for name, unit, default, words in (
-        ("--most", "UM", 200.0, "largest correction of an axis, µm"),
-        ("--rate", "UM_S", 1000.0, "largest rate of change of a correction, µm/s"),
-        ("--patience", "S", 0.5, "time without readings until a correction is marked invalid, s"),
-        ("--hold", "S", 5.0, "time without readings until a correction returns to zero, s"),
-    ):
-        parser.add_argument(
-            name, metavar=unit, type=float, default=default, help=f"{words} ({default:g})"
-        )
-    add_state(parser)
 
 
 def run(args: argparse.Namespace) -> int:

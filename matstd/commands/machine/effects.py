@@ -6,7 +6,7 @@ import argparse
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from matstd.options import add_effects
+from matstd.options import EFFECTS, add_options
 from matstd.twin.errors import UnknownEffect
 
 if TYPE_CHECKING:
@@ -18,13 +18,14 @@ if TYPE_CHECKING:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
-    parser.add_argument(
-        "kind",
-        metavar="KIND",
-        nargs="*",
-        help="kind of effect, such as thermal-lag, or search words, such as: spindle growth",
+    add_options(
+        parser,
+        {
+            "kind [KIND] ...": "kind of effect, such as thermal-lag, or search words, such as: "
+            "spindle growth",
+            **EFFECTS,
+        },
     )
-    add_effects(parser)
 
 
 def run(args: argparse.Namespace) -> int:

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from matstd.console import say
+from matstd.options import add_options
 from matstd.twin.errors import BadArgument
 
 
@@ -71,10 +72,13 @@ EXAMPLES = {
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     parser.add_argument("name", nargs="?", choices=EXAMPLES, help="copy this example")
-    parser.add_argument(
-        "-o", "--output", metavar="FOLDER", help="folder of the copy (default: matstd-examples)"
+    add_options(
+        parser,
+        {
+            "-o --output FOLDER": "folder of the copy (default: matstd-examples)",
+            "--force": "replace files of an earlier copy",
+        },
     )
-    parser.add_argument("--force", action="store_true", help="replace files of an earlier copy")
 
 
 def run(args: argparse.Namespace) -> int:

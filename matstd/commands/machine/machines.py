@@ -3,15 +3,17 @@
 import argparse
 
 from matstd.console import say
+from matstd.options import add_options
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
-    parser.add_argument(
-        "name", nargs="?", metavar="NAME", help="print the machine file of this machine"
-    )
-    parser.add_argument(
-        "--errors", action="store_true", help="print its error file instead of its machine file"
+    add_options(
+        parser,
+        {
+            "name [NAME]": "print the machine file of this machine",
+            "--errors": "print its error file instead of its machine file",
+        },
     )
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from matstd.console import say, say_each
-from matstd.options import seen_from
+from matstd.options import add_options, seen_from
 from matstd.twin.errors import BadArgument
 
 if TYPE_CHECKING:
@@ -49,28 +49,21 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         choices=MACHINES,
         help=f"for a machine: the kind that is most like yours: {', '.join(MACHINES)}",
     )
-    parser.add_argument(
-        "--machine",
-        metavar="MACHINE.toml",
-        help="for a project: propose blank, probe, faces, place and workspace that suit this "
-        "machine",
+    add_options(
+        parser,
+        {
+            "--machine MACHINE.toml": "for a project: propose blank, probe, faces, place and "
+            "workspace that suit this machine",
+            "--table-mm SIZE ...": (
+                "with --machine: diameter of the table, or its two sides, mm (default: from the "
+                "travels)",
+                float,
+            ),
+            "-o --output FILE": "output file (default: standard output); for a project or run, a "
+            "machine.toml is also written beside it if none exists",
+            "--force": "overwrite an existing output",
+        },
     )
-    parser.add_argument(
-        "--table-mm",
-        metavar="SIZE",
-        nargs="+",
-        type=float,
-        help="with --machine: diameter of the table, or its two sides, mm (default: from the "
-        "travels)",
-    )
-    parser.add_argument(
-        "-o",
-        "--output",
-        metavar="FILE",
-        help="output file (default: standard output); for a project or run, a machine.toml "
-        "is also written beside it if none exists",
-    )
-    parser.add_argument("--force", action="store_true", help="overwrite an existing output")
 
 
 def template(kind: str, like: str | None = None) -> str:
@@ -103,12 +96,14 @@ def run(args: argparse.Namespace) -> int:
 def _check_table(args: argparse.Namespace) -> None:
     """Refuse a size that is none, or without a machine."""
     size = args.table_mm
-    shown = " ".join(f"{value:g}" for value in size or ())
-    if size is not None and (len(size) > 2 or min(size) <= 0.0):
+    if not size:
+        return
+    shown = " ".join(f"{value:g}" for value in size)
+    if len(size) > 2 or min(size) <= 0.0:
         raise BadArgument("table_mm", shown, "a diameter or two sides in mm")
-    if size is not None and max(size) < IN_METRES:
+    if max(size) < IN_METRES:
         raise BadArgument("table_mm", f"{shown} (in metres?)", "a diameter or two sides in mm")
-    if size is not None and args.machine is None:
+    if args.machine is None:
         raise BadArgument("table_mm", shown, "it with --machine alone")
 
 
@@ -135,7 +130,7 @@ def _proposed(args: argparse.Namespace) -> int:
     folder = Path(output).parent if output is not None else Path()
     with stages() as show:
         named = seen_from(folder, machine)
-        found = propose(machine, named, tuple(args.table_mm) if args.table_mm else None, show)
+        found = propose(machine, named, tuple(args.table_mm) or None, show)
     if output is None:
         print(found.text, end="")
         return 0

@@ -4,59 +4,44 @@ from __future__ import annotations
 
 import argparse
 
-from matstd.commands.compensation.options import add_driven, add_program
+from matstd.commands.compensation.options import DATUM, DRIVEN, PROGRAM
 from matstd.console import say, say_each
-from matstd.options import add_effects, add_options, add_output
+from matstd.options import EFFECTS, Options, add_options, output
 from matstd.twin.errors import BadArgument
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
-    parser.add_argument("machine", metavar="MACHINE.toml", help="machine file")
-    known = parser.add_mutually_exclusive_group()
-    add_options(
-        known,
-        {
-            "--errors ERRORS.toml": "errors of the machine",
-            "--model MODEL.toml": "model of a diagnosis of this machine",
-        },
-    )
-    parser.add_argument(
-        "--program",
-        metavar="PROGRAM",
-        nargs="+",
-        default=[],
-        help="a part program (.H, .ngc), or probing programs in their order",
-    )
+    add_options(parser, {"machine MACHINE.toml": "machine file"})
+    known: Options = {
+        "--errors ERRORS.toml": "errors of the machine",
+        "--model MODEL.toml": "model of a diagnosis of this machine",
+    }
+    add_options(parser.add_mutually_exclusive_group(), known)
     add_options(
         parser,
         {
+            "--program PROGRAM ...": "a part program (.H, .ngc), or probing programs in their "
+            "order",
             "--standard STANDARD.toml": "standard that the probing programs touch; also shows the "
             "clearance of the probe",
             "--tool-length MM": (
                 "length of the tool, from the spindle gauge point to the tip (150)",
                 150.0,
             ),
+            **DATUM,
+            "--control NAME|FILE.toml": (
+                "control that probing programs are written for; needed for your own dialect "
+                "(itnc530)",
+                "itnc530",
+            ),
+            **PROGRAM,
+            "--loads LOADS.csv": "process forces by program line",
+            **DRIVEN,
+            **EFFECTS,
+            **output("PAGE.html"),
         },
     )
-    parser.add_argument(
-        "--datum",
-        metavar="AXIS=READING",
-        nargs="+",
-        default=[],
-        help="axis readings (mm, degrees) at which the preset is taken (default: 0)",
-    )
-    parser.add_argument(
-        "--control",
-        metavar="NAME|FILE.toml",
-        default="itnc530",
-        help="control that probing programs are written for; needed for your own dialect (itnc530)",
-    )
-    add_program(parser)
-    parser.add_argument("--loads", metavar="LOADS.csv", help="process forces by program line")
-    add_driven(parser)
-    add_effects(parser)
-    add_output(parser, "PAGE.html")
 
 
 def run(args: argparse.Namespace) -> int:

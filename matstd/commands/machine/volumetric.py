@@ -3,16 +3,21 @@
 import argparse
 
 from matstd.console import say_each
-from matstd.options import add_output
+from matstd.options import add_options, output
 from matstd.twin.units import UM
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
-    parser.add_argument("machine", metavar="MACHINE.toml", help="machine file")
-    parser.add_argument("errors", metavar="ERRORS.toml", help="errors of the machine")
-    parser.add_argument("poses", metavar="POSES.csv", help="axis readings, one row per pose")
-    add_output(parser, "OUT.csv")
+    add_options(
+        parser,
+        {
+            "machine MACHINE.toml": "machine file",
+            "errors ERRORS.toml": "errors of the machine",
+            "poses POSES.csv": "axis readings, one row per pose",
+            **output("OUT.csv"),
+        },
+    )
 
 
 def run(args: argparse.Namespace) -> int:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from matstd.commands.measured.results import made_in_folder, say_files
 from matstd.console import say, say_each
-from matstd.options import add_measured, pitches, starting_model
+from matstd.options import add_options, measured, pitches, starting_model
 
 if TYPE_CHECKING:
     from matstd.api.diagnosing import Comparison
@@ -16,10 +16,15 @@ if TYPE_CHECKING:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
-    parser.add_argument("run_file", metavar="RUN.csv", help="measurements")
-    add_measured(
+    add_options(
         parser,
-        "the run is compared with its predictions (default: the ordinary geometric model, fitted)",
+        {
+            "run_file RUN.csv": "measurements",
+            **measured(
+                "the run is compared with its predictions (default: the ordinary geometric model, "
+                "fitted)"
+            ),
+        },
     )
 
 

@@ -10,13 +10,7 @@ from typing import TYPE_CHECKING
 from matstd.commands.measured.results import made_in_folder, say_files
 from matstd.console import console, say, say_each
 from matstd.next_steps import called
-from matstd.options import (
-    add_measured,
-    add_options,
-    add_several,
-    pitches,
-    starting_model,
-)
+from matstd.options import add_options, measured, pitches, starting_model
 from matstd.twin.units import UM
 
 if TYPE_CHECKING:
@@ -27,38 +21,24 @@ if TYPE_CHECKING:
 CELL_WIDTH = 40
 """Width in characters of a cell of words, so that the table of figures fits beside them."""
 
-LISTS = (
-    (
-        "--hold-out",
-        "RUN",
-        "exclude these runs from the fit (only their set-ups are fitted) and report "
-        "how well the others predict them",
-    ),
-    ("--add", "EFFECT", "add these effects to the model"),
-    ("--only", "KIND", "search only for effects of these kinds or names"),
-    ("--without", "KIND", "do not search for effects of these kinds or names"),
-)
-
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
-    parser.add_argument(
-        "run_files",
-        metavar="RUN.csv",
-        nargs="+",
-        help="measurements; several runs of one machine (days, set-ups, standards) in "
-        "order of time",
-    )
-    for option, word, meaning in LISTS:
-        add_several(parser, option, word, meaning)
     add_options(
         parser,
         {
+            "run_files RUN.csv ...": "measurements; several runs of one machine (days, set-ups, "
+            "standards) in order of time",
+            "--hold-out RUN ...": "exclude these runs from the fit (only their set-ups are fitted) "
+            "and report how well the others predict them",
+            "--add EFFECT ...": "add these effects to the model",
+            "--only KIND ...": "search only for effects of these kinds or names",
+            "--without KIND ...": "do not search for effects of these kinds or names",
             "--auto": "add every effect that the diagnosis finds, step by step",
             "--no-learn": "learn no law of what remains (matstd learn does the same by itself)",
+            **measured("starting model of the diagnosis (default: the ordinary geometric model)"),
         },
     )
-    add_measured(parser, "starting model of the diagnosis (default: the ordinary geometric model)")
 
 
 def run(args: argparse.Namespace) -> int:

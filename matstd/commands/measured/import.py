@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from matstd.console import say, say_each
-from matstd.options import add_options, add_output, seen_from
+from matstd.options import add_options, output, seen_from
 from matstd.twin.errors import DesignError
 from matstd.twin.units import UM
 
@@ -36,12 +36,8 @@ _SIGN = {
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
-    parser.add_argument(
-        "files",
-        metavar="FILE",
-        nargs="+",
-        help="csv, txt, xlsx, xls or ods; each of several lists of points is one set-up",
-    )
+    files = "csv, txt, xlsx, xls or ods; each of several lists of points is one set-up"
+    add_options(parser, {"files FILE ...": files})
     _add_kinds(parser)
     _add_details(parser)
     add_options(
@@ -54,20 +50,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
                 "orientation of a target on an arm, µrad",
                 float,
             ),
-        },
-    )
-    parser.add_argument(
-        "--travel",
-        metavar=("AXIS", "LOW", "HIGH"),
-        nargs=3,
-        action="append",
-        default=[],
-        help="travel of an axis in the machine file that is written, mm or degrees (default: that "
-        "of the data; of joints without limits in --dh, whole half turns)",
-    )
-    add_options(
-        parser,
-        {
+            "--travel AXIS LOW HIGH": (
+                "travel of an axis in the machine file that is written, mm or degrees (default: "
+                "that of the data; of joints without limits in --dh, whole half turns)",
+                list,
+            ),
             "--in-order SECONDS": (
                 "rows are in the order of measurement, SECONDS apart; allows the search for "
                 "drifts and slips",
@@ -80,16 +67,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
                 "number of the table in a file with several (default: the one with most readings)",
                 int,
             ),
+            **output("RUN.csv", "overwrite existing outputs"),
         },
     )
-    add_output(parser, "RUN.csv", "overwrite existing outputs")
 
 
 def _add_kinds(parser: argparse.ArgumentParser) -> None:
     """What the files are: one of them."""
-    kind = parser.add_mutually_exclusive_group(required=True)
     add_options(
-        kind,
+        parser.add_mutually_exclusive_group(required=True),
         {
             "--positioning AXIS": "positioning test of this axis (ISO 230-2): targets, cycles",
             "--component NAME": "straightness (such as EYX of X in Y) or angular error (EBX) of a "
@@ -108,9 +94,8 @@ def _add_kinds(parser: argparse.ArgumentParser) -> None:
 
 def _add_details(parser: argparse.ArgumentParser) -> None:
     """What only one kind of file needs."""
-    test = parser.add_argument_group("with --positioning")
     add_options(
-        test,
+        parser.add_argument_group("with --positioning"),
         {
             "--target COLUMN": (
                 "column of the target positions, if the header does not name it; with two "
@@ -120,9 +105,8 @@ def _add_details(parser: argparse.ArgumentParser) -> None:
             "--actual COLUMN": ("column of the actual positions, by the reference instrument", ""),
         },
     )
-    circle = parser.add_argument_group("with --circle")
     add_options(
-        circle,
+        parser.add_argument_group("with --circle"),
         {
             "--radius": ("nominal radius, mm", float),
             "--feed": ("feed, mm/min; times and speeds follow from it", float),
@@ -130,37 +114,29 @@ def _add_details(parser: argparse.ArgumentParser) -> None:
                 "force of a loaded ball bar on the tool, N, outwards (negative: inwards)",
                 float,
             ),
+            "--centre X Y Z": (
+                "axis readings at the centre of the circle, mm (0 0 0)",
+                (0.0, 0.0, 0.0),
+            ),
         },
     )
-    place: dict[str, Any] = {"metavar": ("X", "Y", "Z"), "type": float, "nargs": 3}
-    circle.add_argument(
-        "--centre",
-        default=(0.0, 0.0, 0.0),
-        help="axis readings at the centre of the circle, mm (0 0 0)",
-        **place,
-    )
-    arm = parser.add_argument_group("with --arm")
     add_options(
-        arm,
+        parser.add_argument_group("with --arm"),
         {
             "--dh DH.csv": "Denavit-Hartenberg parameters a, alpha, d, theta, one row per joint, "
             "instead of --machine",
             "--modified": "the parameters of --dh follow the modified convention (Craig)",
+            "--coupled J3+J2": (
+                "coupled joints: the reading of the first is relative to the link before the "
+                "second (Fanuc: J3+J2)",
+                list,
+            ),
+            "--reflector X Y Z": (
+                "position of the reflector, mm, in the tool frame, or with --dh in the flange "
+                "frame (default: estimated from the data)",
+                float,
+            ),
         },
-    )
-    arm.add_argument(
-        "--coupled",
-        metavar="J3+J2",
-        action="append",
-        default=[],
-        help="coupled joints: the reading of the first is relative to the link before the "
-        "second (Fanuc: J3+J2)",
-    )
-    arm.add_argument(
-        "--reflector",
-        help="position of the reflector, mm, in the tool frame, or with --dh in the flange "
-        "frame (default: estimated from the data)",
-        **place,
     )
 
 
@@ -168,8 +144,8 @@ def run(args: argparse.Namespace) -> int:
     """Write the run file, and a machine file where none was given."""
     from matstd.twin.files import refuse_to_overwrite
 
-    output = Path(args.output)
-    refuse_to_overwrite(output, args.force)
+    path = Path(args.output)
+    refuse_to_overwrite(path, args.force)
     names = [n.strip() for n in args.columns.split(",")] if args.columns else ()
     sheets = [_chosen(args, path, names) for path in args.files]
     if args.in_order is not None and not (args.arm or args.part or args.standard):
@@ -183,9 +159,9 @@ def run(args: argparse.Namespace) -> int:
             lines = ", ".join(map(str, sheet.left_out[:10]))
             say(f"- not read as data: line {lines} of {sheet.path}")
     if args.map:
-        _mapped(args, sheets[0], output)
+        _mapped(args, sheets[0], path)
     else:
-        _measured(args, sheets, output)
+        _measured(args, sheets, path)
     return 0
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from matstd.commands.measured.results import made_in_folder, say_files
 from matstd.console import say, say_each
-from matstd.options import add_measured, add_several, pitches, starting_model
+from matstd.options import add_options, measured, pitches, starting_model
 
 if TYPE_CHECKING:
     from matstd.api.learning import LearntLaws
@@ -16,19 +16,16 @@ if TYPE_CHECKING:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
-    parser.add_argument(
-        "run_files",
-        metavar="RUN.csv",
-        nargs="+",
-        help="measurements; several runs of one machine in order of time",
+    add_options(
+        parser,
+        {
+            "run_files RUN.csv ...": "measurements; several runs of one machine in order of time",
+            "--second-run RUN2.csv": "another run of the machine, in which the law is tried; "
+            "nothing is learnt from it",
+            "--add EFFECT ...": "effects that are in the model besides",
+            **measured("model in which a law is missing (default: the ordinary geometric model)"),
+        },
     )
-    parser.add_argument(
-        "--second-run",
-        metavar="RUN2.csv",
-        help="another run of the machine, in which the law is tried; nothing is learnt from it",
-    )
-    add_several(parser, "--add", "EFFECT", "effects that are in the model besides")
-    add_measured(parser, "model in which a law is missing (default: the ordinary geometric model)")
 
 
 def run(args: argparse.Namespace) -> int:

@@ -7,7 +7,6 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, TypeVar
 
 from matstd.console import say
-from matstd.options import asked_printer, print_report
 
 if TYPE_CHECKING:
     from matstd.api.saved import Saveable
@@ -27,19 +26,18 @@ def made_in_folder(
     Returns:
         The result, and the line of `Saveable.write`.
     """
+    from matstd.api.saved import page_folder
     from matstd.effect_kinds import register_effects
     from matstd.progress import stages
-    from matstd.twin.files import results_folder
 
     register_effects(*args.effects)
-    printed_by = asked_printer(args)
-    with results_folder(args.output, args.force, kind.sometimes) as folder, stages() as show:
+    pdf = args.pdf and not args.no_report
+    with page_folder(args.output, pdf, args.force, kind.sometimes) as folder, stages() as show:
         found = make(show)
         arm = found.write(folder)
         if not args.no_report:
             show("report", 0, 1)
             found.write_page(folder)
-            print_report(folder, printed_by)
     return found, arm
 
 

@@ -5,35 +5,20 @@ from __future__ import annotations
 import argparse
 
 from matstd.console import say, say_each
-from matstd.options import add_options, add_output
+from matstd.options import add_options, output
 from matstd.twin.errors import DesignError
 from matstd.twin.units import HOUR, MINUTE, UM
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
-    parser.add_argument(
-        "logs",
-        metavar="LOG.csv",
-        nargs="+",
-        help="time_s or clock; temperatures name_degC, speeds name_rpm; displacements name_um, ...",
-    )
-    parser.add_argument(
-        "--train-until",
-        metavar="HOURS",
-        type=float,
-        help="fit to the log until this time; hold out the rest",
-    )
-    parser.add_argument(
-        "--held-out",
-        metavar="LOG.csv",
-        nargs="+",
-        default=[],
-        help="logs that are held out completely",
-    )
     add_options(
         parser,
         {
+            "logs LOG.csv ...": "time_s or clock; temperatures name_degC, speeds name_rpm; "
+            "displacements name_um, ...",
+            "--train-until HOURS": ("fit to the log until this time; hold out the rest", float),
+            "--held-out LOG.csv ...": "logs that are held out completely",
             "--own-zeros": "fit a separate zero of the displacements for every log",
             "--step-min MIN": ("time step of the laws, minutes (5)", 5.0),
             "--sensor-noise K": ("also evaluate with this noise on the temperatures, K", float),
@@ -41,9 +26,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
             "--u-um": ("standard uncertainty of a probed drift, µm (1)", 1.0),
             "--law thermal.json": "predict with this law of an earlier run; fit nothing",
             "--probed PROBED.csv": "with --law: drifts probed on standards",
+            **output(),
         },
     )
-    add_output(parser)
 
 
 def run(args: argparse.Namespace) -> int:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from matstd.commands.measured.results import made_in_folder, say_files
 from matstd.console import say, say_each
 from matstd.next_steps import called
-from matstd.options import add_results, add_several
+from matstd.options import RESULTS, add_options
 
 if TYPE_CHECKING:
     from matstd.api.trending import Trend
@@ -16,16 +16,16 @@ if TYPE_CHECKING:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
-    parser.add_argument(
-        "runs",
-        metavar="FOLDER",
-        nargs="+",
-        help="folder with at least three runs of one machine on one standard, or with their "
-        "diagnoses or model files; or the files themselves",
+    add_options(
+        parser,
+        {
+            "runs FOLDER ...": "folder with at least three runs of one machine on one standard, or "
+            "with their diagnoses or model files; or the files themselves",
+            "--add EFFECT ...": "effects that are fitted to every run beside the geometry, and "
+            "charted",
+            **RESULTS,
+        },
     )
-    meaning = "effects that are fitted to every run beside the geometry, and charted"
-    add_several(parser, "--add", "EFFECT", meaning)
-    add_results(parser)
 
 
 def run(args: argparse.Namespace) -> int:

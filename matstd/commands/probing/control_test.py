@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from matstd.commands.probing.simulate import add_planted, planted_machine
 from matstd.console import say, say_each
-from matstd.options import add_options, add_output
+from matstd.options import add_options, output
 from matstd.twin.units import MINUTE, UM
 
 if TYPE_CHECKING:
@@ -17,18 +17,16 @@ if TYPE_CHECKING:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
-    parser.add_argument(
-        "design", metavar="OUT", help="output folder of `matstd design`, for any control"
-    )
+    add_options(parser, {"design OUT": "output folder of `matstd design`, for any control"})
     add_planted(parser)
     add_options(
         parser,
         {
             "--touches N": ("run only N touches, spread evenly over the programs", int),
             "--user USER": ("user that runs LinuxCNC if you are root (LinuxCNC refuses root)", ""),
+            **output(),
         },
     )
-    add_output(parser)
 
 
 def run(args: argparse.Namespace) -> int:

@@ -5,26 +5,20 @@ from __future__ import annotations
 import argparse
 
 from matstd.console import say, say_each
-from matstd.options import add_body, add_options, add_output
+from matstd.options import Required, add_options, body, output
 from matstd.twin.errors import BadArgument
 from matstd.twin.units import DEG, UM
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
-    parser.add_argument(
-        "logs",
-        metavar="LOG.TXT",
-        nargs="+",
-        help="logs of the emitted programs, of all probes and set-ups, in any order",
-    )
-    parser.add_argument(
-        "--standard", metavar="STANDARD.toml", required=True, help="standard as calibrated"
-    )
-    parser.add_argument("--machine", metavar="MACHINE.toml", required=True, help="machine file")
     add_options(
         parser,
         {
+            "logs LOG.TXT ...": "logs of the emitted programs, of all probes and set-ups, in any "
+            "order",
+            "--standard STANDARD.toml": Required("standard as calibrated"),
+            "--machine MACHINE.toml": Required("machine file"),
             "--u-um": ("standard uncertainty of one touch, µm (1.0)", 1.0),
             "--z": (
                 "meaning of Z in the result of cycle 4: spindle gauge point, or pole of the "
@@ -43,17 +37,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         },
     )
     _add_scan(parser)
-    add_body(
-        parser, "temperature of the standard during probing, °C (default: T_body_degC of --sensors)"
+    temperature = (
+        "temperature of the standard during probing, °C (default: T_body_degC of --sensors)"
     )
-    add_output(parser, "RUN.csv")
+    add_options(parser, {**body(temperature), **output("RUN.csv")})
 
 
 def _add_scan(parser: argparse.ArgumentParser) -> None:
     """Options of a scan."""
-    scan = parser.add_argument_group("of a scan, a table with x, y, z in place of a log")
     add_options(
-        scan,
+        parser.add_argument_group("of a scan, a table with x, y, z in place of a log"),
         {
             "--scan FACE": "name of the scanned freeform face",
             "--radius-mm": ("radius of the ball", float),
@@ -63,23 +56,15 @@ def _add_scan(parser: argparse.ArgumentParser) -> None:
                 "the standard (machine)",
                 ("machine", "standard"),
             ),
+            "--origin-mm X Y Z": (
+                "origin of the standard in the table frame, within 5 mm (0 0 0)",
+                (0.0, 0.0, 0.0),
+            ),
+            "--rotation-deg A B C": (
+                "its rotations about the fixed x, then y, then z of the table frame (0 0 0)",
+                (0.0, 0.0, 0.0),
+            ),
         },
-    )
-    scan.add_argument(
-        "--origin-mm",
-        metavar=("X", "Y", "Z"),
-        nargs=3,
-        type=float,
-        default=(0.0, 0.0, 0.0),
-        help="origin of the standard in the table frame, within 5 mm (0 0 0)",
-    )
-    scan.add_argument(
-        "--rotation-deg",
-        metavar=("A", "B", "C"),
-        nargs=3,
-        type=float,
-        default=(0.0, 0.0, 0.0),
-        help="its rotations about the fixed x, then y, then z of the table frame (0 0 0)",
     )
 
 

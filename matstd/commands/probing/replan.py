@@ -5,28 +5,19 @@ from __future__ import annotations
 import argparse
 
 from matstd.console import say, say_each
-from matstd.options import SHEET, add_options, add_output, add_pdf, asked_printer
+from matstd.options import PDF, SHEET, Required, add_options, asked_printer, output
 from matstd.twin.units import DEG
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
-    parser.add_argument(
-        "logs",
-        metavar="LOG.TXT|VISIT.csv",
-        nargs="+",
-        help="logs of the search in OUT/setup, or of programs that missed the standard; or the "
-        "touches of a planned visit (next_visit.csv of learn and diagnose)",
-    )
-    parser.add_argument(
-        "--design",
-        metavar="OUT",
-        required=True,
-        help="output folder of `matstd design` or `matstd replan`",
-    )
     add_options(
         parser,
         {
+            "logs LOG.TXT|VISIT.csv ...": "logs of the search in OUT/setup, or of programs that "
+            "missed the standard; or the touches of a planned visit (next_visit.csv of learn and "
+            "diagnose)",
+            "--design OUT": Required("output folder of `matstd design` or `matstd replan`"),
             "--control NAME|FILE.toml": "control that the programs are written for (default: that "
             "of the programs in OUT)",
             "--within-mm": (
@@ -39,10 +30,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
                 "(default: as --within-mm)",
                 float,
             ),
+            **PDF,
+            **output(),
         },
     )
-    add_pdf(parser)
-    add_output(parser)
 
 
 def is_visit(files: list[str]) -> bool:
@@ -55,7 +46,7 @@ def run(args: argparse.Namespace) -> int:
     from matstd.api.replanning import OURS, planned_visit, replan
     from matstd.twin.files import results_folder
 
-    printed_by = asked_printer(args)
+    printed_by = asked_printer(args.pdf)
     angle = None if args.within_deg is None else args.within_deg * DEG
     if is_visit(args.logs):
         found = planned_visit(args.logs[0], args.design, control=args.control)

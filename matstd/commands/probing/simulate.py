@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from matstd.console import say, say_each
-from matstd.options import add_body, add_effects, add_options, add_output, add_several
+from matstd.options import EFFECTS, Options, Required, add_options, body, output
 from matstd.twin.errors import DesignError
 from matstd.twin.units import UM
 
@@ -19,24 +19,19 @@ if TYPE_CHECKING:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
-    parser.add_argument(
-        "programs",
-        metavar="PROGRAM",
-        nargs="+",
-        help="probing programs, in the order in which they run",
+    temperature = (
+        "temperature of the standard, °C; the run file states it (default: 20, not stated)"
     )
-    parser.add_argument(
-        "--standard", metavar="STANDARD.toml", required=True, help="standard that is probed"
-    )
-    parser.add_argument(
-        "--real-standard",
-        metavar="STANDARD.toml",
-        help="true geometry of the standard, such as a calibrated one, if it differs from "
-        "--standard",
-    )
-    parser.add_argument("--machine", metavar="MACHINE.toml", required=True, help="machine file")
-    add_body(
-        parser, "temperature of the standard, °C; the run file states it (default: 20, not stated)"
+    add_options(
+        parser,
+        {
+            "programs PROGRAM ...": "probing programs, in the order in which they run",
+            "--standard STANDARD.toml": Required("standard that is probed"),
+            "--real-standard STANDARD.toml": "true geometry of the standard, such as a calibrated "
+            "one, if it differs from --standard",
+            "--machine MACHINE.toml": Required("machine file"),
+            **body(temperature),
+        },
     )
     add_planted(parser)
     add_options(
@@ -52,9 +47,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
                 "itnc530",
             ),
             "--logs FOLDER": "also write the logs of the control to this folder",
+            **output("RUN.csv"),
         },
     )
-    add_output(parser, "RUN.csv")
 
 
 def run(args: argparse.Namespace) -> int:
@@ -125,28 +120,18 @@ def _search(
 
 def add_planted(parser: argparse.ArgumentParser) -> None:
     """Errors, noise, effects, set-up and probe as they really are."""
-    errors = parser.add_mutually_exclusive_group()
-    add_options(
-        errors,
-        {
-            "--errors ERRORS.toml": "errors of the machine",
-            "--random-errors": "draw the errors from the default distributions",
-        },
-    )
-    parser.add_argument(
-        "--noise-um", type=float, default=1.0, help="standard deviation of one touch, µm (1.0)"
-    )
-    add_several(
-        parser,
-        "--add",
-        "EFFECT=SIZE",
-        "simulate these effects, each size with its unit: "
-        "'thermal-lag(EZZ)=25um,tau=18min', 'backlash(X)=3um', 'drift=X=2um/h'",
-    )
-    add_effects(parser)
+    errors: Options = {
+        "--errors ERRORS.toml": "errors of the machine",
+        "--random-errors": "draw the errors from the default distributions",
+    }
+    add_options(parser.add_mutually_exclusive_group(), errors)
     add_options(
         parser,
         {
+            "--noise-um": ("standard deviation of one touch, µm (1.0)", 1.0),
+            "--add EFFECT=SIZE ...": "simulate these effects, each size with its unit: "
+            "'thermal-lag(EZZ)=25um,tau=18min', 'backlash(X)=3um', 'drift=X=2um/h'",
+            **EFFECTS,
             "--setup-error NAME=SIZE": "offset of the standard from its planned set-up, in its "
             "own frame: X=0.3mm,Y=-0.1mm,C=0.05deg",
             "--probe-error NAME=SIZE": "error of the probe, true minus calibrated value: "

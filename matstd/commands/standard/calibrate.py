@@ -6,7 +6,7 @@ import argparse
 from typing import TYPE_CHECKING
 
 from matstd.console import console, say, say_each
-from matstd.options import add_options, add_output
+from matstd.options import Options, add_options, output
 from matstd.twin.errors import DesignError
 from matstd.twin.units import UM
 
@@ -18,19 +18,14 @@ if TYPE_CHECKING:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
-    parser.add_argument("standard", metavar="STANDARD.toml", help="standard as designed")
-    what = parser.add_mutually_exclusive_group(required=True)
-    what.add_argument(
-        "--points",
-        metavar="CMM.csv",
-        nargs="+",
-        help="points measured by the CMM: columns feature, x, y, z (mm unless the header "
-        "names a unit); a ball may be given by its centre and a column diameter; several files are "
-        "several orientations of the standard on the CMM",
-    )
-    what.add_argument(
-        "--program", action="store_true", help="write the DMIS program that measures the points"
-    )
+    add_options(parser, {"standard STANDARD.toml": "standard as designed"})
+    what: Options = {
+        "--points CMM.csv ...": "points measured by the CMM: columns feature, x, y, z (mm unless "
+        "the header names a unit); a ball may be given by its centre and a column diameter; "
+        "several files are several orientations of the standard on the CMM",
+        "--program": "write the DMIS program that measures the points",
+    }
+    add_options(parser.add_mutually_exclusive_group(required=True), what)
     add_options(
         parser,
         {
@@ -39,25 +34,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
                 "of them (0, 90, 180, 270) cancel squareness and differences of scales",
                 0.0,
             ),
-        },
-    )
-    _add_uncertainties(parser)
-    add_options(
-        parser,
-        {
-            "--accept": "write the standard even if it does not conform to its drawing; the file "
-            "states this",
-            "--cad FOLDER": "also write STEP, STL, 3MF and glTF of the standard as measured",
-        },
-    )
-    add_output(parser, "FILE")
-
-
-def _add_uncertainties(parser: argparse.ArgumentParser) -> None:
-    """Stated uncertainties of the CMM, and what is assumed of the faces."""
-    add_options(
-        parser,
-        {
             "--u-um": ("standard uncertainty of one point, µm (0.3)", 0.3),
             "--u-feature-um": (
                 "standard uncertainty of the position of a feature that its points share "
@@ -79,6 +55,10 @@ def _add_uncertainties(parser: argparse.ArgumentParser) -> None:
                 "dense line of points, µm (0.5)",
                 0.5,
             ),
+            "--accept": "write the standard even if it does not conform to its drawing; the file "
+            "states this",
+            "--cad FOLDER": "also write STEP, STL, 3MF and glTF of the standard as measured",
+            **output("FILE"),
         },
     )
 

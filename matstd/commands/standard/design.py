@@ -5,9 +5,9 @@ from __future__ import annotations
 import argparse
 
 from matstd.console import say, say_each
-from matstd.options import SHEET, add_output, add_pdf
+from matstd.options import PDF, SHEET, add_options, output
 from matstd.progress import Plan
-from matstd.workers import add_scheduler
+from matstd.workers import SCHEDULER
 
 PLAN: Plan = {
     "reach": 3.9,
@@ -34,18 +34,17 @@ LINEAR_PLAN = {**PLAN, "artefacts of balls": 5.4, "faces": 3.4}
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
-    parser.add_argument(
-        "project", metavar="PROJECT.toml", help="project file: machine, blank, workspace, control"
+    add_options(
+        parser,
+        {
+            "project PROJECT.toml": "project file: machine, blank, workspace, control",
+            "--control NAME|FILE.toml": "control that the programs are written for (default: the "
+            "project's; see docs/controls.md)",
+            **SCHEDULER,
+            **PDF,
+            **output(),
+        },
     )
-    parser.add_argument(
-        "--control",
-        metavar="NAME|FILE.toml",
-        help="control that the programs are written for (default: the project's; see "
-        "docs/controls.md)",
-    )
-    add_scheduler(parser)
-    add_pdf(parser)
-    add_output(parser)
 
 
 def run(args: argparse.Namespace) -> int:
@@ -67,7 +66,7 @@ def run(args: argparse.Namespace) -> int:
             force=args.force,
             progress=progress,
             scheduler=args.scheduler,
-            pdf=bool(args.pdf),
+            pdf=args.pdf,
         )
     built, *others = design_lines(made.placement, brief.ranges)
     say(built, style="bold")

@@ -6,9 +6,9 @@ import argparse
 from pathlib import Path
 
 from matstd.console import say_each
-from matstd.options import add_options, add_pdf
+from matstd.options import PDF, Required, add_options
 from matstd.twin.errors import BadFile, DesignError
-from matstd.workers import add_scheduler
+from matstd.workers import SCHEDULER
 
 _STUDY_ONLY = ("draws", "digits", "tolerance_um", "scheduler", "pdf")
 
@@ -20,30 +20,23 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "every pose to a CSV file. With a project: write maps, trajectories and a "
         "Monte Carlo study of random machines to a folder."
     )
-    parser.add_argument(
-        "source", metavar="MACHINE.toml|PROJECT.toml", help="machine file, or project file"
-    )
-    parser.add_argument(
-        "poses",
-        metavar="POSES.csv",
-        nargs="?",
-        help="axis readings, one row per pose (with a machine file)",
-    )
-    parser.add_argument("-o", "--output", metavar="OUT", required=True, help="output file")
     add_options(
         parser,
         {
+            "source MACHINE.toml|PROJECT.toml": "machine file, or project file",
+            "poses [POSES.csv]": "axis readings, one row per pose (with a machine file)",
+            "-o --output OUT": Required("output file"),
             "--draws N": ("largest number of random machines", int),
             "--digits D": ("draw until D significant digits are stable (JCGM 101, 7.9.4)", int),
             "--tolerance-um T": (
                 "also report the share of machines whose deviation exceeds T µm",
                 float,
             ),
+            **SCHEDULER,
+            **PDF,
+            "--force": "overwrite an existing output",
         },
     )
-    add_scheduler(parser)
-    add_pdf(parser)
-    parser.add_argument("--force", action="store_true", help="overwrite an existing output")
 
 
 def run(args: argparse.Namespace) -> int:
@@ -55,7 +48,7 @@ def run(args: argparse.Namespace) -> int:
         return _study(args)
     if args.poses is None:
         raise BadFile(path, "format", "no project", "a project/1, or a machine followed by poses")
-    if given := [name for name in _STUDY_ONLY if getattr(args, name) is not None]:
+    if given := [name for name in _STUDY_ONLY if getattr(args, name) not in (None, False)]:
         option = given[0].replace("_", "-")
         raise DesignError(f"--{option} is for the random machines that a PROJECT.toml describes")
     return _table(args)
@@ -93,7 +86,7 @@ def _study(args: argparse.Namespace) -> int:
             force=args.force,
             progress=progress,
             scheduler=args.scheduler,
-            pdf=bool(args.pdf),
+            pdf=args.pdf,
         )
     for line in (*made.remarks, *study_words(made.study)):
         print(line)

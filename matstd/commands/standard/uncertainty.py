@@ -5,31 +5,24 @@ from __future__ import annotations
 import argparse
 
 from matstd.console import say, say_each
-from matstd.options import add_effects, add_options, add_output
+from matstd.options import EFFECTS, Required, add_options, output
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
-    parser.add_argument(
-        "run_files", metavar="RUN.csv", nargs="+", help="two or more runs on one standard"
-    )
-    parser.add_argument(
-        "--standard",
-        metavar="STANDARD.toml",
-        required=True,
-        help="calibrated standard that was measured",
-    )
     add_options(
         parser,
         {
+            "run_files RUN.csv ...": "two or more runs on one standard",
+            "--standard STANDARD.toml": Required("calibrated standard that was measured"),
             "--task TASK.toml": "measuring task on the workpieces (default: every feature that "
             "was touched on the faces)",
             "--model MODEL.toml": "model of an earlier diagnosis; results are corrected with it",
             "--page PAGE.html": "also write a report page, with its tables beside it",
+            **EFFECTS,
+            **output("OUT.json"),
         },
     )
-    add_effects(parser)
-    add_output(parser, "OUT.json")
 
 
 def run(args: argparse.Namespace) -> int:
