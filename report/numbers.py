@@ -229,6 +229,21 @@ def euros(value: float, u: float) -> str:
     return f"{round(value, -2):.0f} ± {max(round(u, -2), 100.0):.0f} EUR"
 
 
+_FLAT = 10_000.0  # mm: a ball of 3 mm cannot distinguish such a face from a plane
+
+
+def concave_radius_words(value: float) -> str:
+    """Smallest concave radius, mm; a face that is convex everywhere has none, one of 10 m is flat.
+
+    Example:
+        >>> concave_radius_words(41.27), concave_radius_words(2e4), concave_radius_words(math.inf)
+        ('41.3', 'flat', 'convex')
+    """
+    if math.isinf(value):
+        return "convex"
+    return "flat" if value >= _FLAT else f"{value:.{1 if value < 1e3 else 0}f}"
+
+
 def plural(number: int, word: str) -> str:
     """A number of things: `1 touch`, `2 touches`."""
     ending = "" if number == 1 else "es" if word.endswith("ch") else "s"

@@ -70,3 +70,15 @@ def listed(names: list[str], last: str = "and") -> str:
         'a, b and c'
     """
     return f" {last} ".join([", ".join(names[:-1]), names[-1]] if len(names) > 2 else names)
+
+
+def few(names: list[str], most: int, last: str = "and") -> str:
+    """`a, b and c`, or the first ones and how many more there are.
+
+    Example:
+        >>> few(["a", "b", "c"], 2), few(["a", "b"], 2)
+        ('a, b and 1 more', 'a and b')
+    """
+    if len(names) <= most:
+        return listed(names, last)
+    return f"{', '.join(names[:most])} {last} {len(names) - most} more"

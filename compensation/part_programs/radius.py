@@ -272,9 +272,8 @@ class _Contour:
             return moved
         positive = element.arc.angle > 0.0
         whole = abs(element.arc.angle)
-        angle = angle_between(start, end, element.arc.centre, positive)
         turns = max(1, int(np.ceil(whole / (2.0 * np.pi) - 1e-9)))
-        angle += (1.0 if positive else -1.0) * 2.0 * np.pi * (turns - 1)
+        angle = angle_between(start, end, element.arc.centre, positive, turns)
         if abs(angle) > whole + MAX_OVERSHOOT / element.radius:
             self._refuse(element.motion.line)
         share = element.feed_share

@@ -10,6 +10,7 @@ from matstd.compensation.tables import VerifiedTables
 from matstd.report.numbers import digits, um
 from matstd.twin.numbers import rms_length
 from matstd.twin.units import MINUTE, NM, UM
+from matstd.twin.words import few
 
 
 def program_lines(name: str, done: Compensated) -> Iterator[tuple[str, bool]]:
@@ -106,8 +107,7 @@ def table_lines(played: VerifiedTables) -> Iterator[tuple[str, bool]]:
         yield f"- {left_out_sentence(played.left_out)}", False
     held = [left for left in played.result.left if left.rms > max(played.interpolation, 10 * NM)]
     if held:
-        words = ", ".join(held_words(left) for left in held[:MAX_NAMED_ERRORS])
-        more = f" and {len(held) - MAX_NAMED_ERRORS} more" if len(held) > MAX_NAMED_ERRORS else ""
-        yield f"- cannot represent, rms over the workspace: {words}{more}", False
+        words = few([held_words(left) for left in held], MAX_NAMED_ERRORS)
+        yield f"- cannot represent, rms over the workspace: {words}", False
     elif not played.left_out:
         yield "- represents every error of the model", False

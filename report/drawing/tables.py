@@ -21,13 +21,13 @@ from matstd.cad_out.details import (
 )
 from matstd.cad_out.making import Joints, joints_of
 from matstd.report.drawing.sheet import ROW, Block, Sheet, ratio
+from matstd.report.numbers import concave_radius_words
 from matstd.twin.errors import NotBuildable
 from matstd.twin.units import DEG
 from matstd.twin.versions import versions
 
 COLUMN = 154.0  # width of every table and note, mm of paper
 TITLE = (180.0, 48.0)  # width and height of the title block of ISO 7200, mm of paper
-_FLAT = 10_000.0  # mm: a ball of 3 mm cannot distinguish such a face from a plane
 _HEADING = 9.0  # mm above a table, for its title
 _LINE = 4.2  # mm from a line of a note to the next
 _LETTERS = 80  # of a line of a note
@@ -85,14 +85,13 @@ def _faces(standard: Standard) -> Block:
 
 def _face_row(patch: FreeformPatch) -> list[str]:
     x, y, z = patch.point(np.zeros((1, 2)))[0]
-    radius = min_concave_radius(patch)
     shares = ", ".join(f"{e.name} {100 * e.share:.0f} %" for e in patch.errors[:_ERRORS])
     return [
         patch.name,
         *map(_place, (x, y, z)),
         f"{2 * patch.half_size[0]:g} x {2 * patch.half_size[1]:g}",
         f"{max_slope(patch) / DEG:.0f}°",
-        f"{radius:.{1 if radius < 1e3 else 0}f}" if radius < _FLAT else "convex",
+        concave_radius_words(min_concave_radius(patch)),
         shares or "a face of a workpiece",
     ]
 

@@ -5,12 +5,13 @@ bodies that may carry it, the alternatives, and the names.
 """
 
 from collections.abc import Sequence
+from functools import partial
 
 from matstd.diagnosis.answer import Plan, Step
 from matstd.twin.library import parse_effect, title_of
 from matstd.twin.machine import Chain
 from matstd.twin.model import Effect, Title, is_tunable
-from matstd.twin.words import listed
+from matstd.twin.words import few
 
 __all__ = [
     "class_words",
@@ -23,6 +24,8 @@ __all__ = [
 ]
 
 MAX_WRITTEN_OUT = 4  # bodies, titles or names that are written out; of more, the first ones
+
+_few = partial(few, most=MAX_WRITTEN_OUT, last="or")
 
 _BODIES = {"t": "the tool", "w": "the workpiece", "standard": "the standard", "probe": "the probe"}
 
@@ -78,7 +81,7 @@ def class_words(step: Step, clauses: Sequence[str] = ()) -> str:
 def rival_words(step: Step) -> str:
     """`thermal-lag(EZB) cannot be distinguished from thermal-lag(EZX)`; empty without rivals."""
     own, *rivals = [e.name for e in _members(step)]
-    return f"{own} cannot be distinguished from {_few(rivals, 'and')}" if rivals else ""
+    return f"{own} cannot be distinguished from {_few(rivals, last='and')}" if rivals else ""
 
 
 def plan_words(plan: Plan) -> str:
@@ -123,13 +126,6 @@ def _whole(title: Title) -> str:
     text, carrier = title
     is_said = not carrier or carrier in _BODIES or f" of {carrier} " in f"{text} ".replace(",", " ")
     return text if is_said else f"{text}, carried by {carrier}"
-
-
-def _few(words: list[str], last: str = "or") -> str:
-    """`Z, Y, X or B`, or the first ones and how many more there are."""
-    if len(words) <= MAX_WRITTEN_OUT:
-        return listed(words, last)
-    return f"{', '.join(words[:MAX_WRITTEN_OUT])} {last} {len(words) - MAX_WRITTEN_OUT} more"
 
 
 def _bracket(effects: Sequence[Effect], title: str) -> str:

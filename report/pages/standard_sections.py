@@ -7,12 +7,10 @@ from matstd.artefact.worth import CriterionOptions
 from matstd.cad_out.making import FIRST_MODE, ROUGHNESS, SAG, Cutting, FaceHint, Making, Stiffness
 from matstd.cad_out.verify import Conformity
 from matstd.report.layout import Heading, Section, Table
-from matstd.report.numbers import digits, percent, plural, um
+from matstd.report.numbers import concave_radius_words, digits, percent, plural, um
 from matstd.report.pages.design_result import Design
 from matstd.report.task import modulus_words, price_lines
 from matstd.twin.units import DEG, UM
-
-_FLAT = 10_000.0  # mm: a ball of 3 mm cannot distinguish such a face from a plane
 
 _PATCHES = (
     "Features that test the model that was identified from the other balls: position, curvature, "
@@ -58,18 +56,11 @@ def _patch(patch: FreeformPatch, design: Design) -> list[str]:
     return [
         patch.name,
         f"{x:.0f}, {y:.0f}, {z:.0f}",
-        _radius(min_concave_radius(patch)),
+        concave_radius_words(min_concave_radius(patch)),
         f"{max_slope(patch) / DEG:.0f}",
         str(int(np.sum(design.plan.feature == patch.name))),
         ", ".join(f"{e.name}\u00a0{100 * e.share:.0f}\u00a0%" for e in patch.errors[:5]),
     ]
-
-
-def _radius(value: float) -> str:
-    """Smallest concave radius; a face that is convex everywhere has none, one of 10 m is flat."""
-    if not np.isfinite(value):
-        return "convex"
-    return f"{value:.1f}" if value < _FLAT else "flat"
 
 
 def comparison_table(design: Design) -> Table:

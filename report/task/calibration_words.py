@@ -7,7 +7,7 @@ from matstd.artefact.certify import MAX_SPACING, CalibrationFit, CommonCause
 from matstd.artefact.layout import DEFAULT_MODULUS
 from matstd.report.numbers import digits, um
 from matstd.twin.units import GPA, T_REF, UM, URAD
-from matstd.twin.words import listed
+from matstd.twin.words import few, listed
 
 PPM = 1e-6
 _SIGNED = ("diameter", "scale")
@@ -56,13 +56,14 @@ def refusal_sentence(verdicts: Sequence[Verdict], causes: Sequence[CommonCause])
     """Nonconforming characteristics, their common cause, and what to do."""
     refused = [v for v in verdicts if v.is_refused]
     worst = sorted(refused, key=lambda v: v.tolerance / abs(v.deviation))
-    named = [f"{v.feature} {v.characteristic} {_um(v.deviation)} ({_um(v.tolerance)} allowed)"
-             for v in worst[:_NAMED]]  # fmt: skip
-    more = f" and {len(refused) - _NAMED} more" if len(refused) > _NAMED else ""
+    named = [
+        f"{v.feature} {v.characteristic} {_um(v.deviation)} ({_um(v.tolerance)} allowed)"
+        for v in worst
+    ]
     why = "; ".join(map(_cause, causes)) or "measure again, or remake the feature"
     return (
         f"{len(refused)} of {len(verdicts)} characteristics do not conform to the drawing: "
-        f"{', '.join(named)}{more}; {why}; nothing is written; --accept accepts the piece as it is"
+        f"{few(named, _NAMED)}; {why}; nothing is written; --accept accepts the piece as it is"
     )
 
 

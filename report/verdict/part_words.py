@@ -23,7 +23,7 @@ from matstd.report.laws import learnt_words
 from matstd.report.numbers import digits, microns, noun, odds_words, p_value, percent
 from matstd.report.words import sizes, structure_words
 from matstd.twin.library import title_of
-from matstd.twin.words import listed
+from matstd.twin.words import few, listed
 
 MAX_WRITTEN_OUT = 3  # quantities of the geometry that are written out; of more, the first ones
 
@@ -68,11 +68,8 @@ def _geometry(part: GeometryPart) -> str:
 
 
 def _rows(rows: Sequence[GeometryRow]) -> str:
-    words = [
-        f"{quantity_name(r)} {estimate_words(r.estimate, r.unit)}" for r in rows[:MAX_WRITTEN_OUT]
-    ]
-    more = len(rows) - len(words)
-    return f"{', '.join(words)} and {more} more" if more else listed(words)
+    words = [f"{quantity_name(r)} {estimate_words(r.estimate, r.unit)}" for r in rows]
+    return few(words, MAX_WRITTEN_OUT)
 
 
 def _named(one: NamedEffect, step: Step, is_withdrawn: bool) -> str:

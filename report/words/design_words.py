@@ -16,7 +16,7 @@ from matstd.report.numbers import digits, percent, um
 from matstd.report.words.family_words import family_line, proving_words
 from matstd.twin.numbers import rms
 from matstd.twin.units import DEG
-from matstd.twin.words import listed
+from matstd.twin.words import few, listed
 
 _NEGLIGIBLE_SHARE = 5e-4  # of the error that remains unknown
 _NAMED = 4  # effects of low power that are named
@@ -34,8 +34,11 @@ EQUAL = 1.05
 
 def best_rival(placement: Placement) -> Rival | None:
     """The other artefact that can be built and has the smallest error in the workspace."""
-    others = [r for r in placement.rivals if r is not placement.own and r.body is not None]
-    return min(others, key=lambda r: r.rms_user, default=None)
+    return min(_rivals(placement), key=lambda r: r.rms_user, default=None)
+
+
+def _rivals(placement: Placement) -> list[Rival]:
+    return [r for r in placement.rivals if r is not placement.own and r.body is not None]
 
 
 def verdict_of_design(placement: Placement, workspace: Mapping[str, tuple[float, float]]) -> str:
@@ -95,11 +98,9 @@ def _extrapolated(placement: Placement, workspace: Mapping[str, tuple[float, flo
 
 def design_lines(placement: Placement, workspace: Mapping[str, tuple[float, float]]) -> list[str]:
     """What is built, the verdict, the error in the volume, what the faces cost identification."""
-    own = placement.own
-    others = [r for r in placement.rivals if r is not own and r.body is not None]
-    line = f"in the probed volume the tool point is known to {um(own.rms)} rms"
-    if others:
-        rival = min(others, key=lambda r: r.rms)
+    line = f"in the probed volume the tool point is known to {um(placement.own.rms)} rms"
+    rival = min(_rivals(placement), key=lambda r: r.rms, default=None)
+    if rival is not None:
         line += f"; the best other artefact there, {rival.name}, would leave {um(rival.rms)}"
     verdict = verdict_of_design(placement, workspace)
     lines = [family_line(placement), verdict, line, identification_sentence(placement)]
@@ -178,8 +179,7 @@ def blind_spots(placement: Placement) -> str:
     if not len(weak):
         return ""
     order = weak[np.argsort(faces.power[weak])]
-    named = [f"{faces.effects[i]} ({percent(float(faces.power[i]))})" for i in order[:_NAMED]]
-    more = f" and {len(weak) - _NAMED} more" if len(weak) > _NAMED else ""
+    named = [f"{faces.effects[i]} ({percent(float(faces.power[i]))})" for i in order]
     if exact.found - faces.found > 0.5 * len(weak):
         cause = "a better calibration of these features would help"
     elif exact.found > faces.found:
@@ -187,7 +187,7 @@ def blind_spots(placement: Placement) -> str:
     else:
         cause = "the touches are hardly sensitive to these effects, whatever the calibration"
     return (
-        f"Power below {percent(DETECTION_POWER)}: {', '.join(named)}{more}. With exactly known "
+        f"Power below {percent(DETECTION_POWER)}: {few(named, _NAMED)}. With exactly known "
         f"positions of {proving_words(placement.standard, placement.family)}, {exact.found} of "
         f"{len(exact.effects)} effects would be detected with {percent(DETECTION_POWER)} or more, "
         f"{percent(float(exact.power.mean()))} on average: {cause}."

@@ -9,7 +9,7 @@ from matstd.diagnosis.remarks import What
 from matstd.report.numbers import plural, um, unit_words, with_uncertainty
 from matstd.twin.library import title_of
 from matstd.twin.units import T_REF, UM
-from matstd.twin.words import listed
+from matstd.twin.words import few, listed
 
 NONE_CERTAIN = ", but none of its effects is significant in all rows"
 """Behind a way of choosing that added nothing."""
@@ -71,11 +71,10 @@ def _machine_warmth(r: noticed.BodySize) -> str:
         )
     logged = [
         f"{name} {low:.1f} to {high:.1f}" if high - low >= WARMED else f"{name} {low:.1f}"
-        for name, low, high in r.machine[:SENSORS]
+        for name, low, high in r.machine
     ]
-    more = f" and {len(r.machine) - SENSORS} more" if len(r.machine) > SENSORS else ""
-    at = f"{', '.join(logged)}{more} °C"
-    return f"scales of the machine hold at its temperatures during the run, {at}"
+    at = few(logged, SENSORS)
+    return f"scales of the machine hold at its temperatures during the run, {at} °C"
 
 
 def _noise_remembers(r: noticed.Noticed) -> str:

@@ -139,7 +139,7 @@ def test_what_the_proof_does_not_find_is_named_with_the_cause(exact, blame) -> N
         touches=160, power=np.array(exact), found=found, effects=names
     )
     last = blind_spots(made)
-    assert last.startswith("Power below 95 %: c (40 %), a (50 %), b (60 %), d (90 %).")
+    assert last.startswith("Power below 95 %: c (40 %), a (50 %), b (60 %) and d (90 %).")
     assert f"{found} of 5 effects would be detected" in last
     assert blame in last
     made.power = SimpleNamespace(touches=160, power=np.full(5, 0.96), found=5, effects=names)
