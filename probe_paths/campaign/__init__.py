@@ -2,8 +2,7 @@
 
 In: program files and a `VirtualMachine` (the machine as it really is), or the logs of a real one.
 Out: a `Run`. `simulate` checks every move for collisions before it runs the programs; `evaluate`
-uses nothing that only the virtual machine knows. `visits` repeats the runs. `orders` and
-`probing_time` estimate the cost of a plan.
+uses nothing that only the virtual machine knows. `visits` repeats the runs.
 """
 
 from matstd.probe_paths.campaign.as_programmed import check_as_programmed, with_program_lines
@@ -18,18 +17,24 @@ from matstd.probe_paths.campaign.collisions import check_moves
 from matstd.probe_paths.campaign.contact_points import foot_points
 from matstd.probe_paths.campaign.contact_solver import ContactSolver, VirtualMachine
 from matstd.probe_paths.campaign.disturbances import effects_over_record, in_campaign
-from matstd.probe_paths.campaign.evaluation import ball_centres, evaluate, sag_remarks
+from matstd.probe_paths.campaign.evaluation import (
+    LARGEST_GAPS,
+    ball_centres,
+    evaluate,
+    fitted_setup,
+    sag_remarks,
+    touch_uncertainty,
+)
 from matstd.probe_paths.campaign.log_parts import checked_parts
-from matstd.probe_paths.campaign.order_study import Ordering, orders, probing_time
 from matstd.probe_paths.campaign.simulation import Campaign, simulate, simulate_search, visits
 from matstd.probe_paths.campaign.stamps import read_program_of
 from matstd.probe_paths.campaign.tolerance import setup_tolerance
 
 __all__ = [
+    "LARGEST_GAPS",
     "BallChange",
     "Campaign",
     "ContactSolver",
-    "Ordering",
     "VirtualMachine",
     "ball_centres",
     "ball_changes",
@@ -40,16 +45,16 @@ __all__ = [
     "effective_radii",
     "effects_over_record",
     "evaluate",
+    "fitted_setup",
     "foot_points",
     "in_campaign",
-    "orders",
-    "probing_time",
     "read_heights",
     "read_program_of",
     "sag_remarks",
     "setup_tolerance",
     "simulate",
     "simulate_search",
+    "touch_uncertainty",
     "visits",
     "with_program_lines",
 ]

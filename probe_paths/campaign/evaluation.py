@@ -30,16 +30,14 @@ from matstd.twin.record import (
 )
 from matstd.twin.units import DEG, GPA, NM
 
-LARGEST_BELIEVED_GAP = 10.0
-"""Largest gap between a ball and its surface before the set-up is fitted, mm."""
-
-LARGEST_FITTED_GAP = 3.0
-"""The same after the fit, mm: a ball that is farther off touched something else."""
+LARGEST_GAPS = (10.0, 3.0)
+"""Largest gap between a ball and its surface before and after the set-up is fitted, mm: a ball that
+is farther off touched something else."""
 
 LARGEST_OUTLIER_SHARE = 0.1
 """Share of such touches that may be left out; a larger share has a common cause."""
 
-_ROUNDS = 10
+_ROUNDS = 20
 _ARM = 100.0  # mm; scales rotations of the standard to lengths
 
 
@@ -77,14 +75,14 @@ def evaluate(
     _check_calibrations(parts)
     dialect = dialect or Dialect()
     touches = _touches_on(parts, standard, chain, dialect, is_fitted=False)
-    good, far = _split_by_gap(parts, computed_deviation(touches), LARGEST_BELIEVED_GAP)
+    good, far = _split_by_gap(parts, computed_deviation(touches), LARGEST_GAPS[0])
     while True:
         parts, remarks = without_rows(parts, good), [*remarks, *far]
         touches = _touches_on(parts, standard, chain, dialect, is_fitted=True)
-        good, far = _split_by_gap(parts, computed_deviation(touches), LARGEST_FITTED_GAP)
+        good, far = _split_by_gap(parts, computed_deviation(touches), LARGEST_GAPS[1])
         if not far:
             break
-    u_touch = _uncertainty(standard, touches, u)
+    u_touch = touch_uncertainty(standard, touches, u)
     remarks += [*standard.remarks, *sag_remarks(standard)]
     remarks += logged_temperatures(parts)[1]
     begin = min(part.begin for part in parts)
@@ -118,8 +116,12 @@ def sag_remarks(standard: Standard) -> list[str]:
     ]
 
 
-def _uncertainty(standard: Standard, t: Touches, u: float) -> Array:
-    """Standard uncertainty of every touch with those of calibration and sag, (N,), mm."""
+def touch_uncertainty(standard: Standard, t: Touches, u: Array | float) -> Array:
+    """Standard uncertainty of every touch with those of calibration and sag, (N,), mm.
+
+    Args:
+        u: Of the touches themselves, mm.
+    """
     known = {} if standard.known is None else standard.known.features
     form = np.array([known[name].u_form if name in known else 0.0 for name in t.feature.tolist()])
     moved = standard.moved(t.chain, t.q, t.T_table_artefact, t.feature)
@@ -145,7 +147,7 @@ def _touches_on(
     moved = standard.moved(chain, q, stands, feature)
     for i, believed in enumerate(setups if is_fitted else ()):
         rows = np.flatnonzero(setup == i)
-        setups[i] = _fitted_setup(
+        setups[i] = fitted_setup(
             believed, standard, feature[rows], ball_table[rows], radius[rows], moved[rows]
         )
     touches = replace(
@@ -236,7 +238,7 @@ def _setups(parts: Sequence[LogPart]) -> tuple[list[Setup], IntArray]:
     return list(setups.values()), np.array(index, dtype=np.int64)
 
 
-def _fitted_setup(
+def fitted_setup(
     setup: Setup,
     standard: Standard,
     feature: Labels,
@@ -244,10 +246,15 @@ def _fitted_setup(
     radius: Array,
     moved: Array,
 ) -> Setup:
-    """The set-up that minimises the deviations.
+    """The set-up that minimises the deviations; as it was where a ball has no foot point.
 
     Displacing the standard by (e, r) in its own frame changes a deviation by
     ``-n . e - (c x n) . r``, c the ball centre. Undetermined directions stay as believed.
+
+    Args:
+        ball_table: Centres of the balls, table frame, (N, 3), mm.
+        radius: Distance of each from its feature, (N,), mm.
+        moved: Displacements of the features by weight, artefact frame, (N, 3), mm.
     """
     T_table_artefact = setup.T_table_artefact
     for _ in range(_ROUNDS):

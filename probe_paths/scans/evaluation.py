@@ -21,8 +21,13 @@ from pathlib import Path
 import numpy as np
 
 from matstd.artefact.body import FreeformPatch, Standard
+from matstd.probe_paths.campaign import (
+    LARGEST_GAPS,
+    fitted_setup,
+    touch_uncertainty,
+)
 from matstd.twin.errors import BadFile
-from matstd.twin.frames import Array, IntArray, apply, inverse, pose, rotation
+from matstd.twin.frames import Array, IntArray, apply, inverse
 from matstd.twin.machine import Chain, linear_motion, tip
 from matstd.twin.numbers import rms
 from matstd.twin.record import (
@@ -33,12 +38,10 @@ from matstd.twin.record import (
     computed_deviation,
     linear_approach,
 )
-from matstd.twin.units import NM, UM
+from matstd.twin.units import UM
 
 STRETCH = 8.0
 """Length of line in one row, mm: less than half of the narrowest effect that is looked for."""
-
-LARGEST_GAP = 3.0  # largest distance of a ball from its face after the set-up is fitted, mm
 
 LARGEST_RMS = 0.1
 """Root mean square of the deviations with the set-up fitted, mm: no machine in use is that wrong,
@@ -46,14 +49,11 @@ and a radius that is taken off twice leaves more on a wavy face."""
 
 _ON_SURFACE = 0.25  # of the radius: centres of a ball are farther from the face
 _AVERAGED = 0.2  # mm; a curvature of 1/8 mm moves the mean of such an arc by 0.2 µm / 1000
-_BELIEVED = 10.0  # mm: the same before the fit
 _LARGEST_STEP, _USUAL_STEPS = 2.0, 10.0  # mm between points of a line; and median steps
 _EDGE_TOLERANCE = 0.5  # mm that foot points may lie beyond the trimmed edge
 _POINTS_A_ROW = 4  # points of a stretch that becomes a row
 _ALIKE = np.linspace(0.0, 0.98, 99)  # correlations of neighbours that are tried
 _LEAST_U = 0.01 * UM  # of a row
-_ROUNDS = 20
-_ARM = 100.0  # mm; scales rotations of the standard to lengths
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,7 +120,7 @@ def evaluate_scan(
     # sag at the believed set-up: the fit hardly turns the direction of weight
     at = setup.T_table_artefact
     moved = standard.moved(chain, points.q, at, np.full(len(points), face))
-    setup, uv = _fitted(points, place, patch, radius, setup, moved)
+    setup, uv = _fitted(points, place, standard, patch, radius, setup, moved)
     normal = patch.normal(uv)
     point = patch.point(uv) + moved
     moves = _touches(points, chain, (radius, length), setup, point, normal, face)
@@ -129,13 +129,9 @@ def evaluate_scan(
     noise = _noise(gap, place, groups, recorded, len(np.unique(points.line)))
     middles = np.array([rows[len(rows) // 2] for rows in groups])
     means = np.array([_mean_at(gap[rows], place[rows], len(rows) // 2) for rows in groups])
-    known = {} if standard.known is None else standard.known.features
-    form = known[face].u_form if face in known else 0.0
     worse = np.sqrt([max(1.0, _usual(groups) / len(rows)) for rows in groups])
-    share = 0.0 if standard.usable_sag is None else standard.usable_sag.share
-    sag = share * np.einsum("ni,ni->n", normal[middles], moved[middles])
-    total = np.sqrt((noise.u_mean * worse) ** 2 + u**2 + form**2 + sag**2)
     rows = _with_deviations(moves[middles], means)
+    total = touch_uncertainty(standard, rows, np.hypot(noise.u_mean * worse, u))
     return Run(rows, computed_deviation(rows), total, line=points.row[middles]), noise
 
 
@@ -180,6 +176,7 @@ def _averaged(points: ScanPoints, place: Array) -> tuple[ScanPoints, Array]:
 def _fitted(
     points: ScanPoints,
     place: Array,
+    standard: Standard,
     patch: FreeformPatch,
     radius: float,
     setup: Setup,
@@ -190,30 +187,23 @@ def _fitted(
     Args:
         moved: Displacements of the face by its weight, artefact frame, (N, 3), mm.
     """
-    # foot points are projected anew for every set-up; points may lie 10 mm off where the set-up is
-    # believed, 3 mm once it has settled; rotations are lengths at an arm of 100 mm
-    T_table_artefact, limit = setup.T_table_artefact, _BELIEVED
-    for _ in range(_ROUNDS):
-        ball = apply(inverse(T_table_artefact), place) - moved
+
+    def seen_from(stands: Setup, limit: float) -> tuple[Array, Array]:
+        ball = apply(inverse(stands.T_table_artefact), place) - moved
         uv = patch.project(ball)
-        gap = _gaps(points, ball, uv, patch, radius, limit)
-        normal = patch.normal(uv)
-        rows = np.concatenate([normal, np.cross(ball, normal) / _ARM], axis=1)
-        step = np.linalg.lstsq(rows, gap, rcond=1e-6)[0]
-        T_table_artefact = T_table_artefact @ pose(rotation(step[3:] / _ARM), step[:3])
-        if np.abs(step).max() < 1e-2 * NM:
-            break
-        limit = max(LARGEST_GAP, 0.5 * limit)
-    ball = apply(inverse(T_table_artefact), place) - moved
-    uv = patch.project(ball)
-    gap = _gaps(points, ball, uv, patch, radius, LARGEST_GAP)
+        return uv, _gaps(points, ball, uv, patch, radius, limit)
+
+    seen_from(setup, LARGEST_GAPS[0])  # refuses what no fit brings to the face
+    face = np.full(len(points), patch.name)
+    setup = fitted_setup(setup, standard, face, place, radius - points.deflection, moved)
+    uv, gap = seen_from(setup, LARGEST_GAPS[1])
     if rms(gap) > LARGEST_RMS:
         raise points.refuse(
             0, f"deviations of {rms(gap):.2f} mm rms with the set-up fitted",
             f"at most {LARGEST_RMS:g} mm: another face, radius of the ball, or a filter that "
             "takes off the radius of the tip",
         )  # fmt: skip
-    return replace(setup, T_table_artefact=T_table_artefact), uv
+    return setup, uv
 
 
 def _gaps(
@@ -232,7 +222,8 @@ def _gaps(
             "direction in which it was",
         )
     beyond = np.any(
-        np.abs(uv) > np.array(patch.half_size) + limit - LARGEST_GAP + _EDGE_TOLERANCE, axis=1
+        np.abs(uv) > np.array(patch.half_size) + limit - LARGEST_GAPS[1] + _EDGE_TOLERANCE,
+        axis=1,
     )
     far = (np.abs(gap) > limit) | beyond
     if far.any():

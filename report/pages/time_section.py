@@ -6,8 +6,8 @@ import numpy as np
 
 from matstd.artefact.brief import Brief
 from matstd.artefact.place import Placement
-from matstd.probe_paths.campaign import Ordering, orders, probing_time
 from matstd.probe_paths.plan import TouchPlan
+from matstd.probe_paths.stations import Ordering, orders, probing_time
 from matstd.report.layout import Table
 from matstd.report.numbers import digits, percent, um
 from matstd.twin.units import HOUR, MINUTE, UM, URAD

@@ -7,9 +7,9 @@ import pytest
 
 from matstd.artefact.reach import Requests
 from matstd.artefact.tool import Probe
-from matstd.probe_paths.campaign import orders, probing_time
-from matstd.probe_paths.campaign.order_study import _sd_beside, _shortest
 from matstd.probe_paths.plan import PlanOptions
+from matstd.probe_paths.stations import orders, probing_time
+from matstd.probe_paths.stations.order_study import _sd_beside, _shortest
 from matstd.twin.library import ordinary_model
 from matstd.twin.record import Setup
 from matstd.twin.units import MINUTE, UM
