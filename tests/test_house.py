@@ -31,6 +31,7 @@ ALLOWED = BELOW | {"report": set(BELOW), "matstd": {*BELOW, "report"}}
 VOCABULARY = {
     "twin.units",
     "twin.numbers",
+    "twin.rows",
     "twin.text",
     "twin.sampling",
     "twin.frames",

@@ -15,8 +15,8 @@ own file, docs/own_effects.md); a quantity recorded at every touch is a field of
 and a column in `files.run_columns`; a file format of ours is a reader in `files`,
 another's in `matstd.importers`.
 
-Beside the parts stand the words that every room speaks: `units`, `frames`, `errors`, `words`,
-`compute`, `beside`, `versions`.
+Beside the parts stand the words that every room speaks: `units`, `frames`, `rows`, `errors`,
+`words`, `compute`, `beside`, `versions`.
 """
 
 PARTS = (

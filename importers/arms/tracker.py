@@ -19,7 +19,7 @@ from matstd.importers.arms.dh import arm_from_dh
 from matstd.importers.arms.orientation import arms, check_orientations, target_rotation
 from matstd.importers.arms.placement import Placement, located
 from matstd.importers.arms.table import ArmTable, coupled, read_arm
-from matstd.importers.sheets import Sheet, loads, own_columns, seconds, temperatures
+from matstd.importers.sheets import TIME, Sheet, loads, own_columns, seconds, temperatures
 from matstd.twin.errors import DesignError, NotEnoughData
 from matstd.twin.frames import Array, IntArray, inverse
 from matstd.twin.machine import Chain, table_to_tool
@@ -75,7 +75,6 @@ def _mistakes(q: Array) -> Iterator[tuple[str, Array]]:
 
 
 SAME_READING = 1e-4  # readings that agree within this (mm, rad) are one pose, held out as a whole
-_TIME = re.compile(r"time|zeit|clock", re.IGNORECASE)
 
 
 @dataclass(frozen=True, eq=False)
@@ -196,7 +195,7 @@ def tracker_run(
         seen = _by_places(table, found, u)
     else:
         seen = _by_poses(table, chain, u, reflector, u_angle)
-    clock, force = sheet.find(_TIME), loads(sheet)
+    clock, force = sheet.find(TIME), loads(sheet)
     which, n = seen.row, len(seen.row)
     # a pose that was visited again must not predict itself: both visits are held out together
     near = np.round(table.q[which] / SAME_READING).astype(np.int64)

@@ -14,11 +14,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from matstd.importers.sheets import ANGLES, MM, Sheet, stacked, strokes
+from matstd.importers.sheets import ANGLES, MM, Sheet, strokes
 from matstd.twin.errors import BadFile, DesignError
 from matstd.twin.frames import Array, IntArray
 from matstd.twin.machine import Axis, Chain, linear_directions, make_chain
 from matstd.twin.record import Instrument, Labels, Run, Setup, at_poses
+from matstd.twin.rows import stacked
 from matstd.twin.units import MINUTE
 
 PAUSE_BETWEEN_RUNS = 10.0  # assumed pause between two runs, s

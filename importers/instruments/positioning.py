@@ -18,20 +18,20 @@ import numpy as np
 from matstd.importers.sheets import (
     ANGLES,
     MM,
+    TIME,
     Sheet,
     approaches,
     bare,
-    picked,
     seconds,
     sign_of,
     signs,
-    stacked,
     strokes,
     temperatures,
     unit_of_column,
 )
 from matstd.twin.errors import BadFile
 from matstd.twin.frames import Array, IntArray
+from matstd.twin.rows import picked, stacked
 
 SLOPE_TOLERANCE = 0.1
 """Values with a slope over the targets within this of 1 are positions: no axis is wrong by a
@@ -65,7 +65,6 @@ _COMPUTED = re.compile(
 _DIRECTION = re.compile(r"dir|richtung|approach|anfahr", re.IGNORECASE)
 _WAY_OUT = re.compile(r"\b(up|forward|fwd|vorwärts|hin)\b", re.IGNORECASE)
 _WAY_BACK = re.compile(r"\b(down|backward|bwd|reverse|rückwärts|zurück)\b", re.IGNORECASE)
-_TIME = re.compile(r"time|zeit|clock|heure|\btemps", re.IGNORECASE)
 _NUMBER = re.compile(r"\d+")
 _BRACKETS = re.compile(r"[\[(]\s*([^\])]+?)\s*[\])]")
 _ALONE = re.compile(
@@ -156,7 +155,7 @@ def read_positioning(
     if column is None or (is_turned and _NUMBER.search(sheet.names[column])):
         return _without_gaps(sheet, stacked(_wide(sheet, axis, component, target, at, unit)))
     deviation = sheet.quantity(column, units, unit)
-    cycle, clock = map(sheet.find, (_CYCLE, _TIME))
+    cycle, clock = map(sheet.find, (_CYCLE, TIME))
     direction = sheet.find(_DIRECTION, _COMPUTED)
     sign, stroke = (
         approaches(_filled_forward(at)) if clock is None else strokes(_filled_forward(at))

@@ -5,9 +5,9 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from matstd.importers.sheets import stacked
 from matstd.twin.frames import Array, IntArray
 from matstd.twin.record import Labels
+from matstd.twin.rows import stacked
 
 MISPLACED_RATIO = 2.0
 """A point this many times nearer to another one's place than to its own is misplaced."""

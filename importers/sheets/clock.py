@@ -12,6 +12,9 @@ from matstd.twin.errors import BadFile
 from matstd.twin.frames import Array
 from matstd.twin.units import DAY, HOUR, MINUTE
 
+TIME = re.compile(r"time|zeit|clock|heure|\btemps", re.IGNORECASE)
+"""Names of columns of times."""
+
 _CLOCK = re.compile(
     r"(?:(?P<date>\d{1,4}[-./]\d{1,2}[-./]\d{1,4})[T ,]+)?"
     r"(?P<h>\d{1,3}):(?P<m>\d{2})(?::(?P<s>\d{2}(?:[.,]\d+)?))?\s*(?P<half>[aApP][mM])?\s*Z?\Z"

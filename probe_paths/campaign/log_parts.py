@@ -12,13 +12,12 @@ from matstd.probe_paths.campaign.as_programmed import check_numbers
 from matstd.probe_paths.campaign.stamps import check_log_stamp
 from matstd.probe_paths.control import UNDATED, LogPart
 from matstd.twin.errors import BadFile
-from matstd.twin.frames import Array, IntArray
+from matstd.twin.frames import Array
+from matstd.twin.rows import picked
 from matstd.twin.units import NM
 
 LARGEST_OFFSET = 0.1
 """Largest offset of a centred stylus, mm: ten times the reading of a dial gauge."""
-
-_PER_TOUCH = ("line", "number", "pose", "feature", "xyz", "time")
 
 
 def distinct_parts(parts: Sequence[LogPart]) -> list[LogPart]:
@@ -39,7 +38,7 @@ def distinct_parts(parts: Sequence[LogPart]) -> list[LogPart]:
             i = found.index(twin)
             found[i] = replace(twin, remarks=(*twin.remarks, f"{part.path}: {remark}"))
             continue
-        found.append(replace(_rows(part, np.flatnonzero(new)), remarks=(*part.remarks, remark)))
+        found.append(replace(picked(part, np.flatnonzero(new)), remarks=(*part.remarks, remark)))
     return found
 
 
@@ -60,16 +59,6 @@ def _dated(parts: Sequence[LogPart]) -> list[LogPart]:
         )
         for part in parts
     ]
-
-
-def _rows(part: LogPart, rows: IntArray) -> LogPart:
-    return replace(
-        part,
-        rotary={a: v[rows] for a, v in part.rotary.items()},
-        side={a: v[rows] for a, v in part.side.items()},
-        temperature={a: v[rows] for a, v in part.temperature.items()},
-        **{name: getattr(part, name)[rows] for name in _PER_TOUCH},
-    )
 
 
 def _check_alike(one: LogPart, other: LogPart) -> None:
@@ -109,13 +98,12 @@ def checked_parts(parts: Sequence[LogPart], standard: Standard) -> tuple[list[Lo
             f"touch {part.number[i]} is left out"
             for i in np.flatnonzero(~good)
         ]
-        offset = float(np.hypot(*part.offset))
-        if offset > LARGEST_OFFSET:
+        if part.offset > LARGEST_OFFSET:
             remarks.append(
-                f"{part.path}: {part.program}: the ball is calibrated {offset:.3f} mm off the "
+                f"{part.path}: {part.program}: the ball is calibrated {part.offset:.3f} mm off the "
                 "spindle axis: centre the stylus, or recalibrate the probe"
             )
-        kept.append(_rows(part, np.flatnonzero(good)))
+        kept.append(picked(part, np.flatnonzero(good)))
     return kept, remarks + _overlaps(kept)
 
 
@@ -136,7 +124,7 @@ def without_rows(parts: Sequence[LogPart], good: np.ndarray) -> list[LogPart]:
     """Parts without some touches; `good` (N,) counts through all of them."""
     ends = np.cumsum([len(part.number) for part in parts])
     return [
-        _rows(part, np.flatnonzero(good[end - len(part.number) : end]))
+        picked(part, np.flatnonzero(good[end - len(part.number) : end]))
         for part, end in zip(parts, ends, strict=True)
     ]
 

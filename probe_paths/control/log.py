@@ -55,9 +55,9 @@ class LogPart:
     begin: datetime  # when the program was started; `UNDATED` where its date cannot be read
     radius: float  # calibrated radius of the ball, mm
     tool_length: float  # as calibrated, mm; that of the tool table where the control keeps none
-    # calibrated offset of the ball from the spindle axis, (2,), mm; the control has already
-    # corrected X and Y by it
-    offset: Array
+    # calibrated offset of the ball from the spindle axis, mm; the control has already corrected X
+    # and Y by it
+    offset: float
     line: IntArray
     number: IntArray
     pose: IntArray
@@ -187,7 +187,7 @@ class _PartReader:
             begin=begin,
             radius=calibration[0],
             tool_length=calibration[1] or offset[2],
-            offset=np.array(offset[:2]),
+            offset=float(np.hypot(*offset[:2])),
             line=np.array([line for line, _ in rows], dtype=np.int64),
             number=table[:, 0].astype(np.int64),
             pose=table[:, 1].astype(np.int64),

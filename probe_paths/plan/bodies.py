@@ -1,14 +1,15 @@
 """Everything solid round the probe as convex bodies: the standard, the table, clamps, fixtures."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from matstd.artefact.body import BLEND, FreeformPatch, Plate, Standard
 from matstd.artefact.reach import Workshop, table_face
 from matstd.probe_paths.plan.separation import CORNERS, Hulls
-from matstd.twin.frames import Array, IntArray, apply, pose, turn
+from matstd.twin.frames import Array, IntArray, apply, turn
 from matstd.twin.record import Labels
+from matstd.twin.rows import stacked
 
 _CELL = 4.0  # mm: side of a prism's lid; its corners are 0.2 mm off at a radius of 12 mm
 _FINE = 4  # intervals along a side of a cell at which the face is compared with its corners
@@ -49,7 +50,7 @@ def standing_bodies(standard: Standard, T_table_artefact: Array, workshop: Works
             wide = s.foot_radius + BLEND
             chamfer = np.array([[*s.centre[:2], s.foot], [*s.centre[:2], s.foot + BLEND]])
             foot = _hull(chamfer, [wide, s.foot_radius])
-            parts[len(lots)] = _moved(_joined([post, foot]), T_table_artefact)
+            parts[len(lots)] = _moved(stacked([post, foot]), T_table_artefact)
             post = _hull(ends, [wide, s.stem_radius])
         lots.append((f"{s.name} stem", "", post))
     for patch in standard.patches:
@@ -59,7 +60,7 @@ def standing_bodies(standard: Standard, T_table_artefact: Array, workshop: Works
         if patch.name in standard.blended:
             a, b = (half + BLEND for half in patch.half_size)
             box = Plate((a, b), 0.0, -patch.depth, column.top)
-            prisms = _joined([prisms, _chamfer(patch, base.thickness)])
+            prisms = stacked([prisms, _chamfer(patch, base.thickness)])
         parts[len(lots)] = _moved(prisms, T_table_artefact)
         lots.append((patch.name, "", _plate(box, patch.T_artefact_patch)))
     # hulls of owners are tested first, their parts only where a hull is near
@@ -69,7 +70,7 @@ def standing_bodies(standard: Standard, T_table_artefact: Array, workshop: Works
         hull = _plate(solid.plate, T_table_face @ solid.T_face_solid)
         lots.append((solid.name, solid.on, hull))
     return Bodies(
-        hulls=_joined([hull for _, _, hull in lots]),
+        hulls=stacked([hull for _, _, hull in lots]),
         name=np.array([name for name, _, _ in lots]),
         on=np.array([on for _, on, _ in lots]),
         parts=parts,
@@ -122,7 +123,7 @@ def _prisms(patch: FreeformPatch) -> Hulls:
         for j in range(sides[1])
     ]
     below = Plate(patch.half_size, 0.0, -patch.depth, floor)
-    return _moved(_joined([_plate(below, np.eye(4)), *cells]), patch.T_artefact_patch)
+    return _moved(stacked([_plate(below, np.eye(4)), *cells]), patch.T_artefact_patch)
 
 
 def _cell(i: int, j: int, uv: Array, height: Array, floor: float) -> Hulls:
@@ -144,17 +145,5 @@ def _cell(i: int, j: int, uv: Array, height: Array, floor: float) -> Hulls:
     return _hull(np.concatenate([low, high]), [0.0] * CORNERS)
 
 
-def _joined(lots: list[Hulls]) -> Hulls:
-    return Hulls(
-        corner=np.concatenate([hulls.corner for hulls in lots]),
-        disc=np.concatenate([hulls.disc for hulls in lots]),
-        up=np.concatenate([hulls.up for hulls in lots]),
-        ball=np.concatenate([hulls.ball for hulls in lots]),
-    )
-
-
 def _moved(hulls: Hulls, T: Array) -> Hulls:
-    R = pose(T[:3, :3])
-    return Hulls(
-        corner=apply(T, hulls.corner), disc=hulls.disc, up=turn(R, hulls.up), ball=hulls.ball
-    )
+    return replace(hulls, corner=apply(T, hulls.corner), up=turn(T, hulls.up))

@@ -36,6 +36,7 @@ from matstd.twin.errors import DesignError, NotReachable, ShapeMismatch
 from matstd.twin.frames import Array, IntArray
 from matstd.twin.machine import Chain
 from matstd.twin.record import Labels, Setup
+from matstd.twin.rows import picked, stacked
 from matstd.twin.units import DEG
 
 _GAP_MARGIN = 0.011  # mm: gaps are found to 0.01, readings in programs are rounded to 0.0001
@@ -96,7 +97,7 @@ class _Touches:
     reason: Labels  # (N,), empty where nothing is against the touch
 
     def __getitem__(self, rows: IntArray | slice) -> "_Touches":
-        return _Touches(*(getattr(self, name)[rows] for name in self.__dataclass_fields__))
+        return picked(self, rows)
 
 
 def plan_touches(
@@ -352,6 +353,7 @@ def _assembled(
         kept.append(stop)
     if not kept:
         raise NotReachable("no touch can be made", refused=failed)
+    whole = stacked(parts)
     plan = TouchPlan(
         chain=task.chain,
         probe=task.probe,
@@ -361,12 +363,12 @@ def _assembled(
         visits=tuple(kept),
         visit=np.array(visit),
         request=np.array(request),
-        feature=np.concatenate([part.feature for part in parts]),
-        point=np.concatenate([part.point for part in parts]),
-        normal=np.concatenate([part.normal for part in parts]),
-        start=np.concatenate([part.start for part in parts]),
-        contact=np.concatenate([part.contact for part in parts]),
-        direction=np.concatenate([part.direction for part in parts]),
+        feature=whole.feature,
+        point=whole.point,
+        normal=whole.normal,
+        start=whole.start,
+        contact=whole.contact,
+        direction=whole.direction,
     )
     return plan, failed
 

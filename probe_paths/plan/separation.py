@@ -8,12 +8,13 @@ between the bodies as well, and with it a gap that is never too large.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
 
 from matstd.twin.frames import Array, IntArray, Mask
+from matstd.twin.rows import picked
 
 CORNERS = 8  # most corners of a body
 EXACT = 0.01  # accuracy of a gap that matters, mm
@@ -36,7 +37,7 @@ class Hulls:
         return len(self.ball)
 
     def __getitem__(self, rows: IntArray) -> "Hulls":
-        return Hulls(*(getattr(self, f.name)[rows] for f in fields(self)))
+        return picked(self, rows)
 
     def farthest(self, direction: Array) -> Array:
         """Point of each body without its ball farthest in a direction (B, 3), (B, 3)."""
@@ -65,7 +66,7 @@ class Sweeps:
         return len(self.ball)
 
     def __getitem__(self, rows: IntArray) -> "Sweeps":
-        return Sweeps(*(getattr(self, f.name)[rows] for f in fields(self)))
+        return picked(self, rows)
 
     @property
     def middle(self) -> Array:

@@ -38,6 +38,7 @@ from matstd.twin.record import (
     computed_deviation,
     linear_approach,
 )
+from matstd.twin.rows import picked
 from matstd.twin.units import UM
 
 STRETCH = 8.0
@@ -72,8 +73,7 @@ class ScanPoints:
         return len(self.q)
 
     def __getitem__(self, rows: IntArray) -> "ScanPoints":
-        per_point = ("row", "line", "q", "deflection", "time")
-        return replace(self, **{name: getattr(self, name)[rows] for name in per_point})
+        return picked(self, rows)
 
     def refuse(self, at: int, found: str, expected: str) -> BadFile:
         """A refusal that names the line of a point."""

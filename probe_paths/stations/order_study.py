@@ -26,11 +26,12 @@ from matstd.probe_paths.plan import (
     short_order,
 )
 from matstd.twin.errors import NotReachable
-from matstd.twin.frames import Array, IntArray
+from matstd.twin.frames import Array
 from matstd.twin.library import parse_effect
 from matstd.twin.machine import Chain
 from matstd.twin.model import Effect, Model, columns
 from matstd.twin.record import Setup, Touches, at_poses
+from matstd.twin.rows import picked
 
 _PRIOR_FACTOR = 1e3
 """Prior of the sought effects in units of their typical size: almost uninformative."""
@@ -64,7 +65,7 @@ def orders(plan: TouchPlan, model: Model, noise: float) -> tuple[Order, ...]:
         model: Geometric errors of the machine with their prior.
         noise: Standard deviation of one touch, mm.
     """
-    bare = _rows(plan, np.flatnonzero(plan.request >= 0))
+    bare = picked(plan, np.flatnonzero(plan.request >= 0))
     once = _each_pose_once(bare)
     tried = (
         (Ordering.AS_PLANNED, plan),
@@ -124,12 +125,6 @@ def _record(plan: TouchPlan, time: Array, approach: Array) -> Touches:
     )
 
 
-def _rows(plan: TouchPlan, rows: IntArray) -> TouchPlan:
-    """Some rows of a plan in the order given; each visit must keep one touch at least."""
-    per_touch = ("visit", "request", "feature", "point", "normal", "start", "contact", "direction")
-    return replace(plan, **{name: getattr(plan, name)[rows] for name in per_touch})
-
-
 def _shortest(plan: TouchPlan) -> TouchPlan:
     """Visits in a short order from home and back, every pose approached from the one before."""
     way = short_order(np.array([v.rotary for v in plan.visits]), home_readings(plan.chain))
@@ -158,7 +153,7 @@ def _each_pose_once(plan: TouchPlan, visits: tuple[Visit, ...] = ()) -> TouchPla
         places = plan.start[mine][:, sideways]
         rows.append(mine[short_order(places, places[0])])
     sizes = [len(mine) for mine in rows]
-    moved = _rows(plan, np.concatenate(rows))
+    moved = picked(plan, np.concatenate(rows))
     return replace(
         moved, visits=tuple(first.values()), visit=np.repeat(np.arange(len(first)), sizes)
     )

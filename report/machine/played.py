@@ -1,7 +1,7 @@
 """Programs that a page plays: positions between which every axis moves evenly."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from matstd.probe_paths.control import Clock, Move, ProbeStep, ReadProgram, step
 from matstd.twin.frames import Array, IntArray, unit
 from matstd.twin.machine import Chain, linear_directions
 from matstd.twin.record import last_signs
+from matstd.twin.rows import picked
 from matstd.twin.units import DEG
 
 MAX_POSITIONS = 40_000
@@ -56,14 +57,7 @@ class Played:
         keep[-1] = True
         if self.touch is not None:
             keep |= self.touch > 0
-        rows = np.flatnonzero(keep)
-        each = ("time", "q", "sides", "length", "line", "which")
-        some = ("touch", "normal", "clearance", "nearest")
-        picked = {name: getattr(self, name)[rows] for name in each}
-        for name in some:
-            value = getattr(self, name)
-            picked[name] = None if value is None else value[rows]
-        return replace(self, **picked)
+        return picked(self, np.flatnonzero(keep))
 
 
 def played_part(program: Program, errors: MachineErrors, text: str) -> Played:

@@ -315,7 +315,7 @@ def test_halves_of_two_touches_make_none(lines, small, chain):
 
 def test_a_ball_far_off_the_spindle_axis_is_said(lines, small, chain):
     parts = read_log("L", chain.rotary_axes, "\n".join(lines) + "\n")
-    off = replace(parts[0], offset=np.array([1.0, 0.0]))
+    off = replace(parts[0], offset=1.0)
     assert "calibrated 1.000 mm off the spindle axis" in evaluate([off], small, chain, U).remarks[0]
 
 

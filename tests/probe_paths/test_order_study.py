@@ -12,6 +12,7 @@ from matstd.probe_paths.stations import orders, probing_time
 from matstd.probe_paths.stations.order_study import _sd_beside, _shortest
 from matstd.twin.library import ordinary_model
 from matstd.twin.record import Setup
+from matstd.twin.rows import picked
 from matstd.twin.units import MINUTE, UM
 
 END_OF_A_FILE = 10.0
@@ -42,7 +43,7 @@ def test_the_planned_order_takes_as_long_as_its_programs(found, programs, plan):
 
 def test_touches_are_the_same_in_every_order(plan):
     bare = np.flatnonzero(plan.request >= 0)
-    short = _shortest(replace(plan, **{k: getattr(plan, k)[bare] for k in _PER_TOUCH}))
+    short = _shortest(picked(plan, bare))
     assert sorted(short.request) == sorted(plan.request[bare])
     poses = [visit.pose for visit in short.visits]
     assert len(poses) == len(set(poses)) == len({visit.pose for visit in plan.visits})
@@ -50,9 +51,6 @@ def test_touches_are_the_same_in_every_order(plan):
         of = dict(zip(plan.request[bare], getattr(plan, name)[bare], strict=True))
         for row, request in enumerate(short.request):
             assert np.array_equal(getattr(short, name)[row], of[request])
-
-
-_PER_TOUCH = ("visit", "request", "feature", "point", "normal", "start", "contact", "direction")
 
 
 def test_standard_deviations_against_the_whole_covariance():

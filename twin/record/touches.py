@@ -21,6 +21,7 @@ from matstd.twin.machine import (
     tip,
 )
 from matstd.twin.record.instrument import Instrument
+from matstd.twin.rows import picked
 from matstd.twin.units import T_REF
 
 Labels = NDArray[np.str_]
@@ -154,12 +155,7 @@ class Touches:
 
     def __getitem__(self, rows: Mask | IntArray | slice) -> "Touches":
         """The touches of some rows, as a new record."""
-        picked = {
-            name: getattr(self, name)[rows] for name in PER_TOUCH if getattr(self, name) is not None
-        }
-        temperature = {sensor: value[rows] for sensor, value in self.temperature.items()}
-        own = {name: value[rows] for name, value in self.value.items()}
-        return replace(self, temperature=temperature, value=own, **picked)
+        return picked(self, rows)
 
     def reading(self, axis: str) -> Array:
         """Commanded reading of one axis, (N,), mm or rad; raises UnknownAxis.
