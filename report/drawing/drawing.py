@@ -1,8 +1,9 @@
 """The whole sheet: three views, and everything else in the columns beside and below them."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from functools import partial
+from itertools import repeat
 from pathlib import Path
 from typing import Any
 
@@ -119,29 +120,27 @@ def _views(paper: Paper, standard: Standard, scale: float) -> Views:
 
 def _sections(
     sheet: Sheet, top: View, standard: Standard, details: Details
-) -> list[tuple[Block, ...]]:
-    """Sections with what they look like at every scale, the largest first."""
+) -> list[Iterator[Block]]:
+    """Sections with what they look like at every scale, the largest first, drawn when tried."""
     ball, hole = draw_cuts(sheet, top, standard)
-    out = []
+    out: list[tuple[Callable[[Sheet, View], None], Iterable[float]]] = []
     if ball:
-        draw = partial(draw_seat, sphere=ball, standard=standard, details=details)
-        out.append(tuple(block_of(s, draw) for s in _SECTIONS))
+        out.append((partial(draw_seat, sphere=ball, standard=standard, details=details), _SECTIONS))
     if hole:
-        out.append((block_of(1.0, partial(draw_screw, hole=hole, standard=standard,
-                                          details=details)),))  # fmt: skip
+        out.append((partial(draw_screw, hole=hole, standard=standard, details=details), (1.0,)))
     face = large_face(standard)
     if face is not None:
         held = next(t for t in tolerances_of(standard, details) if t.face == face.name)
         draw_it = partial(draw_face, patch=face, standard=standard, tolerance=held)
-        out.append(tuple(block_of(s, draw_it) for s in _SCALES if top.scale <= s <= 1.0))
-    return out
+        out.append((draw_it, (s for s in _SCALES if top.scale <= s <= 1.0)))
+    return [map(block_of, scales, repeat(draw)) for draw, scales in out]
 
 
 def _fill(
     sheet: Sheet,
     views: Views,
     standard: Standard,
-    sections: list[tuple[Block, ...]],
+    sections: list[Iterator[Block]],
     blocks: list[Block],
 ) -> bool:
     """Draws sections and tables in the free columns; whether all found room."""

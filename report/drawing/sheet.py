@@ -93,6 +93,7 @@ class Sheet:
         self.axes.set_axis_off()
         self._depth = 1.0
         self.ink: list[Array] = []  # points of everything drawn
+        self._points, self._lines = np.empty((0, 2)), 0  # of how many of its lines
         # edges of the drawing space
         self.left, self.right = _BINDING, wide - _MARGIN
         self.low, self.high = _MARGIN, high - _MARGIN
@@ -134,7 +135,8 @@ class Sheet:
         self._depth += 1e-3
         closed = fill != "none" or bool(np.allclose(p[0], p[-1]))
         dashes = {"--": (0, (8, 4)), "-.": (0, (20, 4, 2, 4))}.get(style, "-")
-        self.axes.add_patch(
+        # an artist, not a patch: the limits of the axes are known
+        self.axes.add_artist(
             Polygon(
                 p,
                 closed=closed,
@@ -187,7 +189,7 @@ class Sheet:
         """Words beside a circle, on the side where least is drawn."""
         p, half = np.asarray(middle, dtype=float), 0.5 * np.array([_long(words, size), size])
         reach = radius + 2.0 * half[0] + 2.0 * _CLEAR
-        ink = np.concatenate([_dense(line) for line in self.ink])
+        ink = self._dense_ink()
         ink = ink[(np.abs(ink - p) < reach).all(axis=1)]
         ways = np.pi / 4.0 + np.arange(_WAYS) * 2.0 * np.pi / _WAYS
         ways = np.column_stack([np.cos(ways), np.sin(ways)])
@@ -313,8 +315,15 @@ class Sheet:
 
     def crowd(self, low: Any, high: Any) -> int:
         """Points of what is drawn within a rectangle, half a millimetre apart."""
-        ink = np.concatenate([_dense(line) for line in self.ink])
+        ink = self._dense_ink()
         return int(np.count_nonzero(((ink > low) & (ink < high)).all(axis=1)))
+
+    def _dense_ink(self) -> Array:
+        """Points of what is drawn, half a millimetre apart at most, (N, 2)."""
+        new = [_dense(line) for line in self.ink[self._lines :]]
+        self._lines = len(self.ink)
+        self._points = np.concatenate([self._points, *new])
+        return self._points
 
     def contours(self, x: Array, y: Array, z: Array, levels: int) -> None:
         """Thin lines of equal height over a grid."""
