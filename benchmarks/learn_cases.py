@@ -35,7 +35,7 @@ from simulator_laws import FAMILIES, law_case
 from matstd.diagnosis.files import model_text, parsed_model
 from matstd.diagnosis.laws import Learning, learn_laws
 from matstd.twin.files import read_run
-from matstd.twin.laws import Law, carrier_of
+from matstd.twin.laws import Law, carrier_of, law_of
 from matstd.twin.record import Run, without_copies
 from matstd.twin.units import UM
 
@@ -130,11 +130,9 @@ def score(folder: Path) -> Score:
     none = left_of(second, second.deviation, ordinary)
     learnt = left_of(second, second.deviation - found.predicted(second), ordinary)
     saved = parsed_model(model_text(found.saved, "run.csv"), "model.toml", runs=[second])
-    repeated = {one.effect.name for one in saved.repeated}
-    own = np.array([effect.name in repeated for effect, _ in saved.model.parameters])
-    clocked = saved.model.columns(second.touches)[:, own] @ saved.estimates.mean[own]
-    predicted = found.predicted(second) + clocked
-    compared = left_of(second, second.deviation - predicted, ordinary)
+    own = np.array([law_of(effect) is not None for effect, _ in saved.model.parameters])
+    laws = saved.model.columns(second.touches)[:, own] @ saved.estimates.mean[own]
+    compared = left_of(second, second.deviation - laws, ordinary)
     free = folder / "run_test_free.csv"
     true = truth["noise_um"]
     if free.exists():

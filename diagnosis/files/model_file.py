@@ -13,7 +13,7 @@ from matstd.diagnosis.accuracy import Promise
 from matstd.diagnosis.files.covariance import covariance_of
 from matstd.diagnosis.files.curve_table import CurveEntry
 from matstd.diagnosis.files.determined import Determined, DeterminedEntry
-from matstd.diagnosis.files.unknown_elsewhere import kept_law, repeated_laws, unknown_elsewhere
+from matstd.diagnosis.files.unknown_elsewhere import judged_laws, kept_law, unknown_elsewhere
 from matstd.diagnosis.fit import Learnt, Prior, Reported, Role, file_unit
 from matstd.diagnosis.regression import Memory
 from matstd.diagnosis.remarks import EffectOfOtherRun
@@ -136,6 +136,8 @@ class SavedModel(Displayed):
         determined: What that run determines of the geometry, as it was reported.
         left_out: What the file has beside that and is not to be applied here.
         repeated: Laws of another run that the touches of this one show, too; they are applied.
+        refuted: Laws of the machine that the touches of this run speak against: zero is expected of
+            them, as unsure as they are large.
     """
 
     model: Model
@@ -146,6 +148,27 @@ class SavedModel(Displayed):
     determined: tuple[Determined, ...] = ()
     left_out: tuple[EffectOfOtherRun, ...] = ()
     repeated: tuple[EffectOfOtherRun, ...] = ()
+    refuted: tuple[EffectOfOtherRun, ...] = ()
+
+    @property
+    def of_other_runs(self) -> tuple[EffectOfOtherRun, ...]:
+        """All that is to be said of what was learnt from other runs."""
+        return (*self.left_out, *self.repeated, *self.refuted)
+
+    def doubting(self, refuted: Sequence[EffectOfOtherRun]) -> "SavedModel":
+        """The model with zero in the place of some laws, as unsure as they are large."""
+        names = {one.effect.name for one in refuted}
+        if not names:
+            return self
+        is_own = np.array([e.name in names for e, _ in self.model.parameters])
+        root = np.where(is_own[:, None], 0.0, self.estimates.root)
+        covariance = root @ root.T + np.diag(np.where(is_own, self.estimates.mean, 0.0) ** 2)
+        return replace(
+            self,
+            estimates=Prior.of_estimates(np.where(is_own, 0.0, self.estimates.mean), covariance),
+            from_inner=np.where(is_own[:, None], 0.0, self.from_inner),
+            refuted=tuple(refuted),
+        )
 
     def without(self, left_out: Sequence[EffectOfOtherRun]) -> "SavedModel":
         """The model without some effects; what their drivers may do is in their place."""
@@ -268,10 +291,16 @@ def parsed_model(
     others = list(_of_others(table, effects, seen))
     if len(seen) != 1:
         return whole.without(others)
-    repeated = repeated_laws(model, whole.estimates.mean, others, seen[0])
+    is_known = seen[0].fingerprint in table.source.learnt_from
+    repeated, refuted = judged_laws(model, whole.estimates.mean, others, seen[0], is_known)
     names = {one.effect.name for one in repeated}
     rest = [one for one in others if one.effect.name not in names]
-    return replace(whole, repeated=repeated).without(rest)
+    doubted = [
+        EffectOfOtherRun(law, "machine", entry.inner, table.source.run, 0.0, is_refuted=True)
+        for entry, law in zip(table.effect, effects, strict=True)
+        if law in refuted
+    ]
+    return replace(whole, repeated=repeated).without(rest).doubting(doubted)
 
 
 def _check_hash(source: SourceEntry, chain: Chain, path: str | Path) -> None:

@@ -1,11 +1,12 @@
-"""What drivers that no run recorded may do in a run that a saved model does not know."""
+"""What laws of a saved model say of a run that it was not learnt from."""
 
 from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from matstd.diagnosis.laws import REPEATED, left_beside
+from matstd.diagnosis.laws import REPEATED, error_left, fit_beside, log_odds
+from matstd.diagnosis.next_visit import DECIDED
 from matstd.diagnosis.remarks import EffectOfOtherRun
 from matstd.twin.errors import NotEnoughData, UnknownEffect
 from matstd.twin.frames import Array
@@ -41,37 +42,57 @@ def _largest(law: Law, model: Model) -> float:
     return max(sizes, default=law.places[-1])
 
 
-def repeated_laws(
-    model: Model, theta: Array, left_out: Sequence[EffectOfOtherRun], run: Run
-) -> tuple[EffectOfOtherRun, ...]:
-    """Laws of another run that the touches of this one show, too.
+def judged_laws(
+    model: Model, theta: Array, left_out: Sequence[EffectOfOtherRun], run: Run, is_known: bool
+) -> tuple[tuple[EffectOfOtherRun, ...], tuple[Law, ...]]:
+    """What the touches of a run say of laws that were learnt from another one.
 
-    What switches with the program, such as coolant, begins with it in every run. The touches
-    decide: set-ups and model are fitted to them with the law as it was learnt and without it.
+    Set-ups and model are fitted to them with the laws as they were learnt. A law that belongs to
+    its run is applied where the touches show it, too: what switches with the program, such as
+    coolant, begins with it in every run. A law of the machine is expected everywhere, unless the
+    touches speak against it with odds of 20 : 1.
 
     Args:
-        model: With the effects that are left out.
+        model: With all laws.
         theta: Its estimates, (P,), base units.
+        left_out: Effects of other runs.
+        is_known: Whether the model has learnt from this run, too: nothing in it is doubted.
+
+    Returns:
+        Those of them that this run shows, and laws of the machine that it speaks against.
     """
-    laws = [one for one in left_out if law_of(one.effect) is not None]
-    if not laws:
-        return ()
+    bound = [one for one in left_out if law_of(one.effect) is not None]
     names = {one.effect.name for one in left_out}
-    others = Model(model.chain, tuple(e for e in model.effects if e.name not in names))
+    own = [law for law in map(law_of, model.effects) if law and not law.is_margin]
+    lasting = [law for law in own if law.name not in names]
+    if not bound and (is_known or not lasting):
+        return (), ()
+    kept = (e for e in model.effects if law_of(e) is None and e.name not in names)
+    others = Model(model.chain, tuple(kept))
     run = with_commanded(run)
-    known, out = np.zeros(len(run)), list[EffectOfOtherRun]()
+    shown, refuted = list[EffectOfOtherRun](), list[Law]()
+
+    def moved(law: Effect) -> Array:
+        here = theta[[effect is law for effect, _ in model.parameters]]
+        return columns([law], run.touches) @ here
+
     try:
-        least = left_beside(known, run, others)
-        for one in laws:
-            own = theta[[effect is one.effect for effect, _ in model.parameters]]
-            tried = known + columns([one.effect], run.touches) @ own
-            error = left_beside(tried, run, others)
-            if error < REPEATED * least:
-                out.append(replace(one, is_repeated=True))
-                known, least = tried, error
+        added = {law.name: moved(law) for law in lasting}
+        known = np.sum([np.zeros(len(run)), *added.values()], axis=0)
+        least = fit_beside(known, run, others)
+        for law in () if is_known else lasting:
+            tried = fit_beside(known - added[law.name], run, others, least.gross)
+            if log_odds(tried, least, 0.0) > DECIDED:
+                refuted.append(law)
+                known, least = known - added[law.name], tried
+        for one in bound:
+            tried = fit_beside(known + moved(one.effect), run, others)
+            if error_left(tried) < REPEATED * error_left(least):
+                shown.append(replace(one, is_repeated=True))
+                known, least = known + moved(one.effect), tried
     except (NotEnoughData, UnknownEffect):  # too few touches, or a column that this run has not
         pass
-    return tuple(out)
+    return tuple(shown), tuple(refuted)
 
 
 def kept_law(effect: Effect, is_of_run: bool) -> Effect:

@@ -8,7 +8,7 @@ with ``K = -(S^T S)^-1 S^T M`` (their prior among the rows), so the joint covari
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import block_diag, rq, solve_triangular
@@ -71,7 +71,8 @@ def averaged(fits: Sequence[tuple[float, Fit]]) -> Fit:
 
     so every prediction, linear in the parameters, is the average of theirs, and its variance has
     their disagreement besides their own. Which model it is counts as an inner parameter does: no
-    touch has less noise for it. Noise and gross errors are those of the first.
+    touch has less noise for it. The variance of the noise is the average, too; gross errors are
+    those of the first.
 
     Args:
         fits: Shares, 1 together, and fits to one run. What several of them have is one object.
@@ -96,8 +97,14 @@ def averaged(fits: Sequence[tuple[float, Fit]]) -> Fit:
     shares = np.array([share for share, _ in fits])
     if len(fits) > 1:
         inner.append((np.transpose(estimates) - mean[:, None]) * shares**0.5)
-    of_all = Prior.of_estimates(mean, held)
-    learnt = replace(Learnt.of(first), estimates=of_all, from_inner=np.hstack(inner))
+    factors = np.array([fit.noise.factor for _, fit in fits])
+    learnt = Learnt(
+        estimates=Prior.of_estimates(mean, held),
+        from_inner=np.hstack(inner),
+        factor=float(np.sqrt(shares @ factors**2)),
+        gross=first.gross.rows | first.gross_test_rows,
+        memory=first.memory,
+    )
     return learnt.again(first.run, model)
 
 

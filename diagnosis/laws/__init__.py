@@ -7,13 +7,15 @@ formula is kept where it predicts at least as well as the curve (`search`).
 """
 
 from matstd.diagnosis.laws.acceptance import HeldOut, Refusal
+from matstd.diagnosis.laws.beginning import log_odds
 from matstd.diagnosis.laws.estimates import (
     REPEATED,
     Estimate,
     SecondRun,
     amplitudes,
     curve_of,
-    left_beside,
+    error_left,
+    fit_beside,
     partial_residual,
     places,
     second_run,
@@ -36,9 +38,11 @@ __all__ = [
     "SecondRun",
     "amplitudes",
     "curve_of",
+    "error_left",
+    "fit_beside",
     "learn_laws",
     "learn_remainder",
-    "left_beside",
+    "log_odds",
     "partial_residual",
     "places",
     "second_run",

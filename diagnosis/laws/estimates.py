@@ -1,13 +1,13 @@
 """Numbers of a law with their uncertainties, and what a second run says of it."""
 
 from dataclasses import dataclass, replace
-from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 
 from matstd.diagnosis.fit import Fit, fit_run
 from matstd.diagnosis.laws.learnt import Learning
+from matstd.diagnosis.regression import GrossErrors
 from matstd.twin.frames import Array
 from matstd.twin.laws import Driver, Law
 from matstd.twin.model import Model, columns
@@ -158,19 +158,25 @@ REPEATED = 0.95
 error larger, and none makes it a little smaller."""
 
 
-def left_beside(known: Array | float, run: Run, model: Model) -> float:
-    """Root mean square that a model fitted anew leaves beside known deviations, mm.
+def fit_beside(
+    known: Array | float, run: Run, model: Model, gross: GrossErrors | None = None
+) -> Fit:
+    """A model fitted anew beside known deviations, mm; raises NotEnoughData."""
+    return fit_run(replace(run, deviation=run.deviation - known), model, gross=gross)
 
-    It is per degree of freedom; raises NotEnoughData.
-    """
-    fit = fit_run(replace(run, deviation=run.deviation - known), model)
-    return float(np.median(run.u)) * fit.noise.chi2_ratio**0.5
+
+def error_left(fit: Fit) -> float:
+    """Root mean square that a fit leaves, per degree of freedom, mm."""
+    return float(np.median(fit.run.u)) * fit.noise.chi2_ratio**0.5
 
 
 def second_run(learning: Learning, run: Run) -> SecondRun:
     """How well the laws predict another run; raises NotEnoughData."""
     run = with_commanded(without_copies(run))
-    left = partial(left_beside, run=run, model=learning.before.model)
+
+    def left(known: Array | float) -> float:
+        return error_left(fit_beside(known, run, learning.before.model))
+
     is_bound = not all(one.travels for one in learning.laws)
     return SecondRun(
         touches=len(run),

@@ -208,6 +208,17 @@ def _rounded(part: Part) -> Part:
     return Part(Factor(SHAPES[word], part.factor.driver), places)
 
 
+def sharpened(part: Part) -> Part:
+    """The window of a plateau, or the ramp of a saturation; any other part as it is."""
+    word = next((w for w, r in ROUNDED.items() if r == part.factor.shape.word), None)
+    if word is None:
+        return part
+    *middle, width = part.places
+    shift = 0.5 * width if word == "window" else width
+    places = (middle[0] - shift, middle[-1] + shift)
+    return Part(Factor(SHAPES[word], part.factor.driver), places)
+
+
 def product_formulas(
     space: Space, grids: Grids, bearer: Bearer, drivers: Sequence[Driver], most: int
 ) -> list[Candidate]:

@@ -84,7 +84,7 @@ def starting_run(
     if saved is not None:
         name = str(model) if isinstance(model, str | Path) else f"model of {saved.source.run}"
         check_machine(saved, run.touches.chain, name)
-        said = [remark_sentence(one) for one in (*saved.left_out, *saved.repeated)]
+        said = [remark_sentence(one) for one in saved.of_other_runs]
         if is_learnt_from(saved, run):
             said.append(f"{name} was learnt from this very run, {same}")
         run = replace(run, remarks=(*run.remarks, *said))

@@ -291,7 +291,7 @@ def uncertainty(
         for one in seen:
             check_machine(saved, one.touches.chain, called)
         models[f"with {called}"] = saved.model, saved.estimates
-        remarks += [remark_sentence(one) for one in (*saved.left_out, *saved.repeated)]
+        remarks += [remark_sentence(one) for one in saved.of_other_runs]
         remarks += [
             f"{called} has learnt from {name}: a visit proves more where it had no part in it"
             for name, one in zip(names, seen, strict=True)

@@ -95,6 +95,11 @@ def _of_another_run(r: noticed.EffectOfOtherRun) -> str:
     words = f"{title_of(r.effect).text} ({', '.join([r.effect.name, *inner])})"
     if r.is_repeated:
         return f"{words} was learnt from {whose}{size}: this run shows it, too, and it is applied"
+    if r.is_refuted:
+        return (
+            f"{words} was learnt from {whose}: the touches of this run speak against it, and it is "
+            "not expected here, but for an uncertainty of its size"
+        )
     return f"{words} belongs to {whose}{size}: it is not applied here"
 
 

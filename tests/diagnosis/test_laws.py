@@ -34,9 +34,10 @@ from matstd.diagnosis.laws import (
     Refusal,
     Rival,
     amplitudes,
+    error_left,
+    fit_beside,
     learn_laws,
     learn_remainder,
-    left_beside,
     places,
     second_run,
 )
@@ -80,7 +81,7 @@ def test_a_law_of_the_clock_of_one_run_is_not_expected_in_another(stylus) -> Non
     assert moved.learnt == moved.without
     assert not moved.is_clock_kept
     assert "kept its times: it did not." in second_run_sentence(moved)
-    true = left_beside(0.0, free, ordinary_model(free.touches.chain))
+    true = error_left(fit_beside(0.0, free, ordinary_model(free.touches.chain)))
     texts = law_case(
         np.random.default_rng(5), "hmc1995", "stylus", (30.0, 31.0), 4, is_clock_kept=True
     )
@@ -105,7 +106,7 @@ def test_a_law_that_begins_with_the_set_up_predicts_a_second_run() -> None:
     assert [one.law.drivers[0].name for one in found.laws] == ["since-setup"]
     said = second_run(found, second)
     assert said.clocked is None
-    true = left_beside(0.0, free, ordinary_model(free.touches.chain))
+    true = error_left(fit_beside(0.0, free, ordinary_model(free.touches.chain)))
     assert said.learnt < 1.1 * true
     assert said.without > 1.3 * true
 
@@ -418,7 +419,7 @@ def test_a_model_predicts_the_average_over_laws_that_its_run_does_not_distinguis
     entries = {e["name"]: e for e in tomllib.loads(text)["effect"]}
     assert [entries[e.name]["share"] for e in (law, other)] == pytest.approx([0.75, 0.25])
     assert all("share" not in e for name, e in entries.items() if not name.startswith("law("))
-    saved = parsed_model(text, "model.toml", runs=[second])
+    saved = parsed_model(text, "model.toml")
     # what the geometry takes up is uncertain by millimetres, and alike in both
     Q = np.linalg.qr(start.fit.model.columns(second.touches))[0]
 
@@ -452,6 +453,36 @@ def test_a_model_predicts_the_average_over_laws_that_its_run_does_not_distinguis
     np.testing.assert_allclose(found.predicted(second), sum(added), atol=1e-6 * UM)
     again = compare(found.before.run, parsed_model(text, "model.toml", runs=[found.before.run]))
     np.testing.assert_allclose(again.fit.residual, found.saved.residual, atol=1e-3 * UM)
+
+
+def test_a_law_that_a_run_speaks_against_is_not_expected_there(stylus) -> None:
+    _, (run, second, _), _ = stylus
+    law = parse_effect("law(EZY,bump Y)", run.touches.chain)
+    law = law.tuned(float(np.median(run.touches.reading("Y"))), 60.0)
+
+    def moved(one):
+        return replace(one, deviation=one.deviation + 4.0 * UM * columns([law], one.touches)[:, 0])
+
+    start = Beginning.of_run(moved(run))
+    after = start.fitted([law])
+    one = LearntLaw(law, (), 0.0, 0.0, 0.0, ())
+    found = Learning(start, after, after, (one,), None, None, (), POLICY)
+    text = model_text(found.saved, "monday.csv", shares=found.shares)
+    assert "share =" not in text
+    shown, absent, known = (
+        parsed_model(text, "model.toml", runs=[r]) for r in (moved(second), second, start.run)
+    )
+    assert shown.refuted == () == known.refuted
+    (said,) = absent.refuted
+    assert said.effect.name == law.name
+    assert "touches of this run speak against it" in remark_sentence(said)
+    (own,) = np.flatnonzero([e.name == law.name for e, _ in absent.model.parameters])
+    assert absent.estimates.mean[own] == 0.0
+    amplitude = abs(after.theta[after.of_effect(law.name)][0])
+    assert absent.estimates.sd[own] == pytest.approx(amplitude)
+    # every other estimate stays
+    others = np.arange(len(absent.estimates)) != own
+    np.testing.assert_array_equal(absent.estimates.mean[others], shown.estimates.mean[others])
 
 
 def test_a_curve_is_saved_and_is_uncertain_where_it_has_not_been(stylus, tmp_path) -> None:
