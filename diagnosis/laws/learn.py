@@ -23,6 +23,7 @@ from matstd.diagnosis.laws.policy import POLICY, LawPolicy
 from matstd.diagnosis.laws.search import Ground, Searched, search_law
 from matstd.diagnosis.laws.space import Space
 from matstd.diagnosis.regression import GrossErrors
+from matstd.diagnosis.residual import apart_elsewhere
 from matstd.twin.compute import one_blas_thread
 from matstd.twin.frames import Mask
 from matstd.twin.laws import Carrier, Law
@@ -160,7 +161,7 @@ def _alike(gross: GrossErrors) -> Mask:
 
 
 def _of_its_run(one: LearntLaw, seen: Touches, policy: LawPolicy) -> LearntLaw:
-    """The law, with what belongs to its run marked among its rivals and itself.
+    """The law, with what belongs to its run marked among its rivals and itself, and its class.
 
     A law over a temperature or a level may stand for a driver that was not recorded, which another
     run meets at another temperature.
@@ -174,7 +175,8 @@ def _of_its_run(one: LearntLaw, seen: Touches, policy: LawPolicy) -> LearntLaw:
         f.driver.nature in STAND_IN and f.shape.word not in PROPORTIONAL for f in one.law.factors
     )
     is_of_run = (is_stand_in and one.run_odds < policy.open_driver) or not one.law.rests(seen)
-    return replace(one, law=replace(one.law, is_of_run=is_of_run))
+    elsewhere = tuple(apart_elsewhere(one.law.carrier, one.alike, seen)) if one.alike else ()
+    return replace(one, law=replace(one.law, is_of_run=is_of_run), elsewhere=elsewhere)
 
 
 def _each_anew(

@@ -1,6 +1,6 @@
 """What was learnt from a run: laws with what speaks for them, and what they predict."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import product
 from math import prod
@@ -41,6 +41,7 @@ class LearntLaw:
     # the effect of the library that explains most of the same; None without any
     library: LibraryEffect | None = None
     memory: float = -np.inf  # log evidence of noise that remembers in the place of the law
+    elsewhere: tuple[Carrier, ...] = ()  # of those alike, each kind that differs in other poses
 
     @property
     def travels(self) -> bool:
@@ -69,7 +70,8 @@ class LearntLaw:
         if not self.travels:
             return [(self.law, 1.0)]
         near, seen = [], {self.law.explanation}
-        for rival in self.rivals:
+        alike = [Rival(replace(self.law, carrier=carrier), 0.0) for carrier in self.elsewhere]
+        for rival in (*alike, *self.rivals):
             if rival.log_odds < policy.class_odds and rival.law.explanation not in seen:
                 seen.add(rival.law.explanation)
                 near.append(rival)

@@ -6,7 +6,7 @@ A new test is a module beside `waves` and `crowds`, called by `structure`.
 """
 
 from matstd.diagnosis.residual.boxes import Condition, Side
-from matstd.diagnosis.residual.carriers import Bearer, bearers
+from matstd.diagnosis.residual.carriers import Bearer, apart_elsewhere, bearers
 from matstd.diagnosis.residual.failing_regions import (
     Region,
     Wrong,
@@ -38,6 +38,7 @@ __all__ = [
     "Side",
     "Structure",
     "Wrong",
+    "apart_elsewhere",
     "bearers",
     "binned",
     "directions",

@@ -1,6 +1,7 @@
 """What may carry an error that has no name: components of the axes, the standard, the probe."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -11,6 +12,9 @@ from matstd.twin.machine import Family
 from matstd.twin.record import Touches
 
 SAME_COSINE = 0.99999  # cosine of carriers that no touch of a run distinguishes
+
+SPREAD = np.sqrt([2.0, 3.0, 5.0, 7.0, 11.0, 13.0, 17.0])
+"""Steps of readings, in travels, that fill the travels of all axes evenly (Weyl's sequence)."""
 
 
 class Bearer(NamedTuple):
@@ -48,3 +52,24 @@ def bearers(
         else:
             firsts.append((carrier, C, []))
     return [Bearer(carrier, C, tuple(alike)) for carrier, C, alike in firsts]
+
+
+def apart_elsewhere(carrier: Carrier, alike: Sequence[Carrier], touches: Touches) -> list[Carrier]:
+    """Of carriers that do the same at every touch of a run, those that differ in other poses.
+
+    A run with B at one angle does not distinguish what B carries from what Z carries; another run
+    does. Of several that are the same in all poses the first stands for all.
+    """
+    chain, q = touches.chain, touches.q.copy()
+    moved = [chain.axis_index(axis) for axis in chain.programmed_axes]
+    share = np.mod(np.outer(np.arange(len(q)), SPREAD[: len(moved)]), 1.0)
+    limits = chain.travels[moved]
+    q[:, moved] = limits[:, 0] + np.ptp(limits, axis=1) * share
+    anywhere = replace(touches, q=q)
+    others = [c.name for c in (carrier, *alike) if c.symbol is None]
+    groups = [
+        {b.carrier.name, *(c.name for c in b.alike)}
+        for b in bearers(anywhere, lambda columns: columns, others)
+    ]
+    found = (next((c for c in alike if c.name in g), None) for g in groups if carrier.name not in g)
+    return [c for c in found if c is not None]

@@ -49,11 +49,13 @@ from matstd.diagnosis.laws.screening import by_evidence
 from matstd.diagnosis.laws.search import Ground, _curves
 from matstd.diagnosis.laws.space import Space
 from matstd.diagnosis.remarks import EffectOfOtherRun
+from matstd.diagnosis.residual import apart_elsewhere
 from matstd.report.laws import limits_sentences, no_law_sentence, second_run_sentence
 from matstd.report.laws.run_words import run_sentence
 from matstd.report.run_view import diagnosis_step
 from matstd.report.verdict import part_lines
 from matstd.report.words import remark_sentence, verdict_sentence
+from matstd.twin.laws import carrier_of
 from matstd.twin.library import ordinary_model, parse_effect
 from matstd.twin.model import Model, columns
 from matstd.twin.units import UM
@@ -483,6 +485,22 @@ def test_a_law_that_a_run_speaks_against_is_not_expected_there(stylus) -> None:
     # every other estimate stays
     others = np.arange(len(absent.estimates)) != own
     np.testing.assert_array_equal(absent.estimates.mean[others], shown.estimates.mean[others])
+
+
+def test_a_run_of_one_pose_leaves_carriers_that_other_poses_distinguish() -> None:
+    """B tilts the table C: only at B = 0 is "along Z" the same for C as for the axes beside it."""
+    texts = law_case(np.random.default_rng(3), "hsm600u", "kink", (30.0, 31.0), poses=3)
+    run = read_back(texts[0], MACHINES["hsm600u"])
+    touches = run[run.touches.reading("B") == 0.0].touches
+    law = parse_effect("law(EZY,lin Y)", touches.chain)
+    alike = [carrier_of(name, touches.chain) for name in ("EZX", "EZB", "EZC", "EZZ")]
+    columns_ = [one.columns(touches) for one in (law.carrier, *alike)]
+    np.testing.assert_allclose(np.abs(columns_[1:]), np.abs(columns_[:1]).repeat(4, 0), atol=1e-9)
+    assert [c.name for c in apart_elsewhere(law.carrier, alike, touches)] == ["EZC"]
+    assert apart_elsewhere(law.carrier, alike[:2], touches) == []
+    one = LearntLaw(law, tuple(alike), 9.0, 0.0, 0.0, (), elsewhere=(alike[2],))
+    members = {law.name: share for law, share in one.members(POLICY)}
+    assert members == {"law(EZY,lin Y)": 0.5, "law(EZC,lin Y)": 0.5}
 
 
 def test_a_curve_is_saved_and_is_uncertain_where_it_has_not_been(stylus, tmp_path) -> None:
