@@ -187,7 +187,7 @@ class _PartReader:
             begin=begin,
             radius=calibration[0],
             tool_length=calibration[1] or offset[2],
-            offset=float(np.hypot(*offset[:2])),
+            offset=float(np.hypot(offset[0], offset[1])),
             line=np.array([line for line, _ in rows], dtype=np.int64),
             number=table[:, 0].astype(np.int64),
             pose=table[:, 1].astype(np.int64),
