@@ -12,8 +12,8 @@ from matstd.artefact.compare import comparison
 from matstd.artefact.feasibility.within_travels import travels
 from matstd.artefact.place import design_standard
 from matstd.artefact.worth import TouchOptions, ball_choice
-from matstd.probe_paths.campaign import orders
 from matstd.probe_paths.emit import make_programs
+from matstd.probe_paths.stations import orders
 from matstd.report.plots import draw_order
 from matstd.report.style import save
 from matstd.stages import design
