@@ -128,11 +128,10 @@ def farthest_off(standard: Standard, touches: Touches, path: str | Path) -> floa
     far = np.flatnonzero(off > _OTHER_PIECE)
     if len(far):
         worst = int(np.argmax(off))
-        by = f"{off[worst]:.1f} mm off" if np.isfinite(off[worst]) else "beside"
         raise DesignError(
             f"{path}: {len(far)} of {len(off)} touches lie off standard '{standard.name}', one of "
-            f"them {by} {touches.feature[worst] or 'all features'}; expected the standard that was "
-            "probed"
+            f"them {f'{off[worst]:.1f} mm off' if np.isfinite(off[worst]) else 'beside'} "
+            f"{touches.feature[worst] or 'all features'}; expected the standard that was probed"
         )
     return float(off.max())
 

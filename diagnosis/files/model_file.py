@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated
 
 import numpy as np
 from pydantic import Field
@@ -13,12 +13,13 @@ from matstd.diagnosis.accuracy import Promise
 from matstd.diagnosis.files.covariance import covariance_of
 from matstd.diagnosis.files.curve_table import CurveEntry
 from matstd.diagnosis.files.determined import Determined, DeterminedEntry
+from matstd.diagnosis.files.effect_entry import EffectEntry
 from matstd.diagnosis.files.unknown_elsewhere import judged_laws, kept_law, unknown_elsewhere
-from matstd.diagnosis.fit import Learnt, Prior, Reported, Role, file_unit
+from matstd.diagnosis.fit import Learnt, Prior, Reported, file_unit
 from matstd.diagnosis.regression import Memory
 from matstd.diagnosis.remarks import EffectOfOtherRun
 from matstd.twin.display import Displayed
-from matstd.twin.errors import BadFile, DesignError
+from matstd.twin.errors import BadFile
 from matstd.twin.files import (
     MachineTables,
     Table,
@@ -27,44 +28,14 @@ from matstd.twin.files import (
     read_text,
 )
 from matstd.twin.frames import Array
-from matstd.twin.library import owner_of, parse_effect
+from matstd.twin.library import owner_of
 from matstd.twin.machine import Chain
-from matstd.twin.model import Effect, Model, is_tunable
+from matstd.twin.model import Effect, Model
 from matstd.twin.record import Run, Touches, without_copies
-from matstd.twin.units import DEG, UM
+from matstd.twin.units import UM
 
 FORMAT, OLDER = "model/2", "model/1"
 """Version that is written, and one that is read: it has no hash of its machine."""
-
-
-class ReportedEntry(Table):
-    """`[[effect.told]]`: one number of an effect, in the unit that it states."""
-
-    quantity: str
-    unit: str = ""
-    value: float
-    u: float | None = Field(default=None, ge=0.0)
-    role: Literal["size", "inner parameter", "coefficient"] = "size"
-    bound: Literal[-1, 0, 1] = 0
-
-
-class EffectEntry(Table):
-    """`[[effect]]`: its name, its inner parameters, and the estimates of the others.
-
-    `told` are its numbers as reported of the run, which rest on the touches alone where the
-    estimates lean on what is usual. `run` and `share_um` stand at effects that are not the
-    machine's: the fingerprint of their run, and the rms that they made at its touches. Of effects
-    between which the run does not distinguish each has its `share`, and estimates that are so much
-    of what they would be with it alone: together they predict the average.
-    """
-
-    name: str
-    inner: dict[str, float] = Field(default_factory=dict)
-    share: float = Field(default=1.0, gt=0.0, le=1.0)
-    estimate: dict[str, float]
-    told: list[ReportedEntry] = Field(default_factory=list)
-    run: str = ""
-    share_um: float = Field(default=0.0, ge=0.0)
 
 
 class MemoryEntry(Table):
@@ -266,7 +237,7 @@ def parsed_model(
     by_name = {e.name: e for e in known}
     effects, mean, factors = [], [], []
     for i, entry in enumerate(table.effect):
-        effect = _effect(entry, chain, by_name, path, f"effect[{i}]")
+        effect = entry.effect(chain, by_name, path, f"effect[{i}]")
         effect = kept_law(effect, bool(entry.run))
         keys = parameter_keys(effect)
         expected = [key for key, _ in keys]
@@ -284,7 +255,7 @@ def parsed_model(
         estimates=Prior.of_estimates(np.array(mean), covariance),
         source=table.source,
         from_inner=_from_inner(table.from_inner, np.array(factors), path),
-        reported={entry.name: tuple(_reported(t) for t in entry.told) for entry in table.effect},
+        reported={entry.name: tuple(t.reported() for t in entry.told) for entry in table.effect},
         determined=tuple(entry.determined() for entry in table.determined),
     )
     seen = [without_copies(run) for run in runs]
@@ -296,7 +267,14 @@ def parsed_model(
     names = {one.effect.name for one in repeated}
     rest = [one for one in others if one.effect.name not in names]
     doubted = [
-        EffectOfOtherRun(law, "machine", entry.inner, table.source.run, 0.0, is_refuted=True)
+        EffectOfOtherRun(
+            effect=law,
+            owner="machine",
+            inner=entry.inner,
+            run=table.source.run,
+            share=0.0,
+            is_refuted=True,
+        )
         for entry, law in zip(table.effect, effects, strict=True)
         if law in refuted
     ]
@@ -351,19 +329,6 @@ def _of_others(
             )
 
 
-def _reported(entry: ReportedEntry) -> Reported:
-    """A number as it was reported; its unit in the base unit is not needed any more."""
-    return Reported(
-        quantity=entry.quantity,
-        unit=entry.unit,
-        value=entry.value,
-        u=entry.u,
-        factor=1.0,
-        role=Role(entry.role),
-        bound=entry.bound,
-    )
-
-
 def _from_inner(rows: list[list[float]], factors: Array, path: str | Path) -> Array:
     """Root of the part of inner parameters in base units, (P, T)."""
     if not rows:
@@ -376,29 +341,3 @@ def _from_inner(rows: list[list[float]], factors: Array, path: str | Path) -> Ar
             f"a row of equal length a parameter of {len(factors)}",
         )
     return np.array(rows, dtype=float) * factors[:, None]
-
-
-def _effect(
-    entry: EffectEntry, chain: Chain, known: dict[str, Effect], path: str | Path, key: str
-) -> Effect:
-    """Effect of one entry at its inner parameters."""
-    try:
-        effect = known.get(entry.name) or parse_effect(entry.name, chain)
-    except DesignError as error:
-        expected = f"a known effect ({error}); effects of your own are loaded by --effects"
-        raise BadFile(path, f"{key}.name", entry.name, expected) from error
-    if not entry.inner:
-        return effect
-    if not is_tunable(effect) or len(entry.inner) != len(effect.tuning):
-        expected = ", ".join(effect.tuning) if is_tunable(effect) else "none"
-        raise BadFile(path, f"{key}.inner", ", ".join(entry.inner), expected)
-    values = []
-    for (stored, value), name in zip(entry.inner.items(), effect.tuning, strict=True):
-        suffix = stored.removeprefix(name)
-        if suffix == stored or suffix not in _INNER_FACTORS:
-            raise BadFile(path, f"{key}.inner", stored, f"{name} with its unit")
-        values.append(value * _INNER_FACTORS[suffix])
-    return effect.tuned(*values)
-
-
-_INNER_FACTORS = {"": 1.0, "_min": 60.0, "_s": 1.0, "_mm": 1.0, "_deg": DEG}

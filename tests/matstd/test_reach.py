@@ -155,19 +155,32 @@ def test_a_face_that_is_no_table_is_said() -> None:
     assert set(said.values()) == {()}
 
 
-def test_travels_of_a_table_entered_the_other_way_are_reported(tmp_path: Path) -> None:
-    """Y carries the table: its readings are those of the tool relative to it."""
+def carried_by_y(tmp_path: Path, travel: str, place: float) -> Path:
+    """A trunnion on a table at `place` along Y, which carries it."""
     machine = {
-        r"(?<=^\[axis.Y\]\nrange = ).*": "[100.0, 700.0]",
-        r"(?<=^origin = )\[.*": "[0.0, -400.0, -500.0]",
-        r"(?<=^\[axis.A\]\nrange = \[-120.0, 30.0\]\npoint = ).*": "[0.0, -400.0, -450.0]",
-        r"(?<=^\[axis.C\]\nrange = \[-360.0, 360.0\]\npoint = ).*": "[0.0, -400.0, 0.0]",
+        r"(?<=^\[axis.Y\]\nrange = ).*": travel,
+        r"(?<=^origin = )\[.*": f"[0.0, {place}, -500.0]",
+        r"(?<=^\[axis.A\]\nrange = \[-120.0, 30.0\]\npoint = ).*": f"[0.0, {place}, -450.0]",
+        r"(?<=^\[axis.C\]\nrange = \[-360.0, 360.0\]\npoint = ).*": f"[0.0, {place}, 0.0]",
     }
-    wrong = changed(tmp_path, "trunnion", {r"^Y = .*\n": ""}, machine)
-    message = refusal(read_project(wrong))
-    assert "axis.Y.range = [-700, -100] of the machine (readings move the tool" in message
-    machine[r"(?<=^\[axis.Y\]\nrange = ).*"] = "[-700.0, -100.0]"
-    assert is_reached(read_project(changed(tmp_path, "trunnion", {r"^Y = .*\n": ""}, machine)))
+    return changed(tmp_path, "trunnion", {r"^Y = .*\n": ""}, machine)
+
+
+def test_travels_of_a_table_with_the_opposite_sign_are_reported(tmp_path: Path) -> None:
+    """Y carries the table: its readings are those of the tool relative to it."""
+    message = refusal(read_project(carried_by_y(tmp_path, "[50.0, 650.0]", -345.0)))
+    assert "axis.Y.range = [-650, -50] of the machine (readings move the tool" in message
+    assert is_reached(read_project(carried_by_y(tmp_path, "[-650.0, -50.0]", -345.0)))
+
+
+def test_travels_of_the_opposite_sign_far_from_the_table_are_asked_about(tmp_path: Path) -> None:
+    asked = (
+        r"axis.Y.range: found \[100, 700\], 500 mm away from the table, expected readings that "
+        r"move the tool relative to the workpiece; is it \[-700, -100\]\?"
+    )
+    with pytest.raises(BadFile, match=asked):
+        read_project(carried_by_y(tmp_path, "[100.0, 700.0]", -400.0))
+    assert is_reached(read_project(carried_by_y(tmp_path, "[-700.0, -100.0]", -400.0)))
 
 
 def with_few_sites(patches, reach, blank, poses, _sites, seed):

@@ -253,7 +253,7 @@ def _in_centimetres(chain: Chain, name: str, beside: str) -> BadValue:
 
 
 def _far_table(chain: Chain) -> Iterator[BadValue]:
-    """A table that no tool reaches: its place, or travels in centimetres."""
+    """A table that no tool reaches: its place, travels in centimetres, or of the other sign."""
     low, high = _travels(chain)
     origin = chain.table_origin
     outside = np.maximum(low - origin, origin - high)
@@ -269,6 +269,15 @@ def _far_table(chain: Chain) -> Iterator[BadValue]:
         words = f"and a table {away:.0f} mm beyond"
         yield from (_in_centimetres(chain, name, words) for name in small)
         return
+    for link in chain.links:
+        is_along = link.kind == "linear" and abs(link.direction[axis]) > 0.5
+        if is_along and link.carries_workpiece and -high[axis] <= origin[axis] <= -low[axis]:
+            least, most = link.range
+            found = f"{_pair(least, most)}, {away:.0f} mm away from the table"
+            meant = f"is it {_pair(-most, -least)}?"
+            expected = f"readings that move the tool relative to the workpiece; {meant}"
+            yield BadValue(f"axis.{link.name}.range", found, expected)
+            return
     found = f"{_list(origin)}, {away:.0f} mm beyond the travel along {'XYZ'[axis]}"
     yield BadValue(
         "workpiece.origin", found, "the centre of the table's face, within the reach of a tool"
