@@ -5,10 +5,17 @@
 `make api` installs what it needs (pdoc) and runs it.
 """
 
+import ast
 import importlib
 import inspect
+import io
+import re
+import textwrap
+import tokenize
+from dataclasses import replace
 from pathlib import Path
 from pkgutil import iter_modules
+from types import ModuleType
 
 import pdoc
 
@@ -34,10 +41,12 @@ ROOMS = (
 HEAD = """\
 # Python interface
 
-`import matstd` has all that the command line can do. Lengths are in mm, angles in rad, times in s,
-temperatures in °C; `UM`, `URAD`, `DEG` and `MINUTE` are the units of files and figures. The files
-are those of the commands ([formats](formats)). `make api` writes this page, and to `out/api` the
-same with arguments and errors of every name.
+`import matstd` has what the commands do with a machine, a run or a model. Tables of instruments are
+read by `matstd.importers`: `read_sheet`, then for a positioning test `read_positioning` and
+`positioning_run`. `new`, `examples` and `control-test` are of the command line alone. Lengths are
+in mm, angles in rad, times in s, temperatures in °C; `UM`, `URAD`, `DEG` and `MINUTE` are the units
+of files and figures. The files are those of the commands ([formats](formats)). `make api` writes
+this page, and to `out/api` the same with arguments and errors of every name.
 
     import matstd
 
@@ -83,7 +92,68 @@ def signature(name: str, thing: object) -> str:
         stars = {parameter.VAR_KEYWORD: "**", parameter.VAR_POSITIONAL: "*"}.get(parameter.kind, "")
         is_open = value is parameter.empty
         out.append(stars + parameter.name + ("" if is_open else f"={usual}"))
-    return f"{name}({', '.join(out)})"
+    given = inspect.signature(thing).return_annotation
+    returned = "" if given in (None, "None", inspect.Signature.empty) else f" -> {typed(given)}"
+    return f"{name}({', '.join(out)}){returned}"
+
+
+def typed(annotation: object) -> str:
+    """A type without the modules that define it."""
+    text = annotation if isinstance(annotation, str) else inspect.formatannotation(annotation)
+    text = re.sub(r"(?<![\w.])(?:\w+\.)+(?=\w)", "", text.strip("\"'"))
+    return re.sub(r"ndarray\[.*?, dtype\[(\w+)\]\]", r"Array of \1", text).replace("|", "or")
+
+
+def field_comments(thing: type | ModuleType) -> dict[str, str]:
+    """What comments say of fields or constants: behind them, or in the lines above a field."""
+    source = textwrap.dedent(inspect.getsource(thing))
+    behind, above = {}, {}
+    for token in tokenize.generate_tokens(io.StringIO(source).readline):
+        if token.type == tokenize.COMMENT:
+            text = token.string.removeprefix("#").strip()
+            (above if token.line.lstrip().startswith("#") else behind)[token.start[0]] = text
+    out = {}
+    tree = ast.parse(source)
+    for node in tree.body[0].body if inspect.isclass(thing) else tree.body:
+        if isinstance(node, ast.AnnAssign | ast.Assign):
+            first = node.lineno
+            while first - 1 in above:
+                first -= 1
+            lines = [above[i] for i in range(first, node.lineno)] or [behind.get(node.end_lineno)]
+            if lines != [None] and not lines[0].startswith(("noqa", "type:", "fmt:")):
+                targets = node.targets if isinstance(node, ast.Assign) else [node.target]
+                names = [n.id for t in targets for n in ast.walk(t) if isinstance(n, ast.Name)]
+                out |= dict.fromkeys(names, " ".join(lines))
+    return out
+
+
+def attribute_lines(thing: object) -> list[str]:
+    """Fields and properties of a class of ours and of those that it extends, these first."""
+    said: dict[str, str] = {}
+    types: dict[str, str] = {}
+    classes = [c for c in thing.__mro__ if c.__module__.startswith("matstd.")]
+    for own in reversed(classes):
+        section = re.search(
+            r"Attributes:\n((?:    .*\n|\n)*)", inspect.cleandoc(own.__doc__ or "") + "\n"
+        )
+        for name, text in re.findall(
+            r"^    (\w+): (.*(?:\n {8}.*)*)", section[1] if section else "", re.M
+        ):
+            said[name] = text
+        said |= field_comments(own)
+        for name, annotation in inspect.get_annotations(own).items():
+            types[name] = typed(annotation)
+        for name, value in vars(own).items():
+            function = getattr(value, "fget", None) or getattr(value, "func", None)
+            if inspect.isfunction(function):
+                types[name] = typed(inspect.get_annotations(function).get("return", ""))
+                said[name] = first_line(inspect.getdoc(function) or said.get(name, ""))
+    lines = [
+        f"| `.{name}` | `{given}` | {first_line(said.get(name, ''))} |"
+        for name, given in types.items()
+        if not name.startswith("_") and "ClassVar" not in given
+    ]
+    return ["| attribute | type | is |", "| --- | --- | --- |", *lines, ""] if lines else []
 
 
 def door_lines() -> list[str]:
@@ -102,8 +172,12 @@ def door_lines() -> list[str]:
                 if callable(function) and not method.startswith("_"):
                     said = first_line(inspect.getdoc(function) or "")
                     lines.append(f"| `{signature(f'{name}.{method}', function)}` | {said} |")
-            body = inspect.cleandoc(text).replace("\n", "\n    ")
+        if inspect.isroutine(thing) or inspect.isclass(thing):
+            plain = re.sub(r"\nAttributes:\n(    .*\n|\n)*", "\n", inspect.cleandoc(text) + "\n")
+            body = plain.rstrip().replace("\n", "\n    ")
             long += [f"#### {name}", "", f"    {body}".replace("    \n", "\n"), ""]
+        if inspect.isclass(thing):
+            long += attribute_lines(thing)
     return [*lines, "", *long]
 
 
@@ -128,7 +202,9 @@ def part_lines(name: str) -> list[str]:
     places = [face, *map(pdoc.doc.Module, inside)]
     for listed in face.obj.__all__:
         texts = (found.docstring for m in places if (found := m.get(listed)) and found.docstring)
-        lines.append(f"| `{listed}` | {first_line(next(texts, ''))} |")
+        value = getattr(face.obj, listed)
+        usual = f"`{value!r}`" if isinstance(value, str | int | float) else ""
+        lines.append(f"| `{listed}` | {first_line(next(texts, usual))} |")
     return [*lines, ""]
 
 
@@ -143,8 +219,23 @@ def index() -> str:
     return "\n".join(lines)
 
 
+def read_comments() -> None:
+    """Make pdoc take what comments say of fields and constants for their docstrings."""
+    walked = pdoc.doc_ast.walk_tree
+
+    def with_comments(thing: object) -> pdoc.doc_ast.AstInfo:
+        info = walked(thing)
+        place = getattr(thing, "__module__", getattr(thing, "__name__", ""))
+        is_ours = not inspect.isroutine(thing) and place.startswith("matstd.")
+        comments = field_comments(thing) if is_ours else {}
+        return replace(info, var_docstrings={**comments, **info.var_docstrings})
+
+    pdoc.doc_ast.walk_tree = with_comments
+
+
 def main() -> None:
     """Write index and pages."""
+    read_comments()
     INDEX.write_text(index(), encoding="utf-8")
     pdoc.render.configure(docformat="google")
     pdoc.pdoc("matstd", *ROOMS, output_directory=PAGES)

@@ -18,7 +18,8 @@ from matstd.artefact.body import write_standard
 from matstd.cli import main
 from matstd.compensation.field import MachineErrors
 from matstd.diagnosis.fit import fit_run
-from matstd.twin.library import ordinary_model
+from matstd.twin.library import ordinary_model, parse_effect
+from matstd.twin.units import UM
 
 ROOT = Path(__file__).parents[1]
 EXAMPLES = ROOT / "examples"
@@ -157,16 +158,19 @@ def test_every_name_of_the_door_has_an_example(name) -> None:
 def test_large_records_have_a_short_text(there) -> None:
     run = matstd.read_run("run.csv")
     model = ordinary_model(run.touches.chain)
+    files = matstd.machine_file("hmc1995"), matstd.machine_file("hmc1995", errors=True)
+    machine = matstd.compensate(*files, tool_length=100.0)
     records = [
+        machine,
+        machine.errors,
+        machine.tables("tables", "iso230"),
         run,
         run.touches.chain,
         model,
         fit_run(run, model),
         matstd.read_standard("standard.toml"),
         matstd.simulate(["programs/MS_A_1.H"], "standard.toml", "machine.toml"),
-        matstd.volumetric(
-            matstd.machine_file("hmc1995"), matstd.machine_file("hmc1995", errors=True), poses()
-        ),
+        matstd.volumetric(*files, poses()),
     ]
     for record in records:
         assert len(repr(record)) < 400, type(record)
@@ -213,6 +217,23 @@ def test_commands_write_what_the_door_writes(there, unrendered) -> None:
         assert Path("command", name).read_bytes() == Path("door", name).read_bytes()
     with pytest.raises(matstd.DesignError, match="already exists"):
         found.page("door")
+
+
+def test_calls_that_nothing_fits_are_refused_by_their_argument(there) -> None:
+    with pytest.raises(matstd.BadArgument, match=r"^runs none: expected one run or more"):
+        matstd.diagnose([])
+    with pytest.raises(matstd.BadArgument, match=r"^model geometri: expected geometry, setup or"):
+        matstd.compare("run.csv", "geometri")
+    with pytest.raises(matstd.BadArgument, match=r"^temperature 24.0: expected values by name"):
+        matstd.State(temperature=24.0)
+
+
+def test_a_model_asks_at_once_for_all_that_it_follows(there) -> None:
+    chain = matstd.read_run("run.csv").touches.chain
+    effects = [(parse_effect("thermal-static(EZZ,spindle)", chain), np.ones(1) * UM)]
+    effects += [(parse_effect("thermal-static(EXX,oil)", chain), np.ones(1) * UM)]
+    with pytest.raises(matstd.DesignError, match=r"sensor 'spindle'.*sensor 'oil'"):
+        MachineErrors.of_errors(chain, effects)
 
 
 def test_an_argument_is_named_as_it_was_given(there, capsys) -> None:

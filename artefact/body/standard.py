@@ -63,14 +63,14 @@ class Standard(Displayed):
         sag: Displacements by its own weight as stated in its file; None where not computed.
     """
 
-    name: str
+    name: str  # on drawing, programs and runs
     serial: str
-    material: Material
+    material: Material  # of the body
     base: Base
     core: Core | None
-    patches: tuple[FreeformPatch, ...]
-    spheres: tuple[DatumSphere, ...]
-    holes: tuple[MountingHole, ...]
+    patches: tuple[FreeformPatch, ...]  # freeform faces
+    spheres: tuple[DatumSphere, ...]  # balls
+    holes: tuple[MountingHole, ...]  # by which it is screwed to the table
     blank_height: float
     known: Known | None = None
     sag: Sag | None = None

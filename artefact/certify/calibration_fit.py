@@ -54,7 +54,7 @@ _UNIT_TOLERANCE = 0.01  # relative difference of distances: parts agree better, 
 class CalibrationFit:
     """A calibrated standard and the results of its calibration."""
 
-    standard: Standard
+    standard: Standard  # calibrated
     moved: dict[str, float]  # largest deviation of every feature from the design, mm
     offset: dict[str, float]  # mean deviation of every face along the normal, mm
     u_radius: dict[str, float]  # standard uncertainty of the radius of every ball by its points, mm
@@ -62,7 +62,7 @@ class CalibrationFit:
     # peak to valley of every ball by its points, less what their noise makes, mm
     form: dict[str, float]
     unseen: tuple[str, ...]  # faces on which dense lines are missing, so that `waviness` is assumed
-    waviness: float
+    waviness: float  # assumed root mean square of waves that the points cannot show, mm
     u_point: float  # standard uncertainty of one point as stated, mm
     remarks: tuple[str, ...]  # unused points and other irregularities
 

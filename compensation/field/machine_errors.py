@@ -13,7 +13,8 @@ from matstd.compensation.field.state import SWITCHED_ON, State
 from matstd.diagnosis.files import SavedModel, model_of
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.geometry import Estimate
-from matstd.twin.errors import BadValue
+from matstd.twin.display import Displayed
+from matstd.twin.errors import BadValue, UnknownEffect
 from matstd.twin.frames import Array
 from matstd.twin.machine import (
     Chain,
@@ -51,8 +52,8 @@ def deviation(disturbance: Disturbance, touches: Touches) -> Array:
     return actual_tip(disturbance, touches) - tip(disturbance.chain, touches.q, touches.target)
 
 
-@dataclass(frozen=True, eq=False)
-class MachineErrors:
+@dataclass(frozen=True, eq=False, repr=False)
+class MachineErrors(Displayed):
     """What a model says of a machine's axes, and how well it knows it.
 
     Set-ups, probe and standard, and the constants of workpiece and tool (`EX0w`, `EX0t` ...) belong
@@ -103,6 +104,7 @@ class MachineErrors:
     ) -> "MachineErrors":
         middle = np.array([[float(np.mean(chain.link(a).range)) for a in chain.axes]])
         at = state.touches(chain, middle, 0.0)
+        _refuse_missing(at, [effect for effect, _ in known])
         counts = [len(theta) for _, theta in known]
         is_kept = [_is_of_machine(effect, at) for effect, _ in known]
         is_tool = [
@@ -305,6 +307,18 @@ def _row_space(rows: Array) -> Array:
 def _moves_axis(chain: Chain, where: Where) -> bool:
     """Whether an entry is of an axis, not of workpiece, tool, standard or probe."""
     return where.moves_tip and chain.links[where.link].kind != "fixed"
+
+
+def _refuse_missing(at: Touches, effects: Sequence[Effect]) -> None:
+    """Raise UnknownEffect with everything that effects follow and the state does not have."""
+    missing: list[str] = []
+    for effect in effects:
+        try:
+            effect.terms(at)
+        except UnknownEffect as error:
+            missing.append(str(error))
+    if missing:
+        raise UnknownEffect("; ".join(dict.fromkeys(missing)))
 
 
 def _is_of_machine(effect: Effect, at: Touches) -> bool:

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from matstd.twin.errors import BadArgument
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain
 from matstd.twin.record import Touches, at_poses
@@ -20,6 +21,11 @@ class State:
     spindle_rpm: float | None = None  # since the machine was switched on, 1/min; None where unknown
     value: Mapping[str, float] = field(default_factory=dict)  # user's columns, by name and unit
     force: tuple[float, float, float] | None = None  # on the tool, table-frame directions, N
+
+    def __post_init__(self) -> None:
+        for name in ("temperature", "value"):
+            if not isinstance(given := getattr(self, name), Mapping):
+                raise BadArgument(name, given, "values by name, such as {'spindle': 24.0}")
 
     def touches(
         self,

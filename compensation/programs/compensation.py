@@ -11,6 +11,7 @@ from matstd.compensation.part_programs import Keep, Motion, Program
 from matstd.compensation.programs.path import ProgramPath, are_first, shares_of_lines
 from matstd.compensation.programs.times import Timed, in_time
 from matstd.compensation.tables import Header, point_spacing
+from matstd.twin.display import Displayed
 from matstd.twin.errors import OutsideTravel
 from matstd.twin.frames import Array, IntArray, Mask, unit
 from matstd.twin.machine import tip
@@ -78,8 +79,8 @@ MAX_LINE = 20.0
 MIN_LINE = 0.01  # a line that is shorter is not divided, mm: controls round there
 
 
-@dataclass(frozen=True, eq=False)
-class Compensated:
+@dataclass(frozen=True, eq=False, repr=False)
+class Compensated(Displayed):
     """A program and its compensation, point by point in the order of the motion."""
 
     program: Program

@@ -68,8 +68,10 @@ class Comparison(Tabular):
     geometry: LearntGeometry
     repeatability: Repeatability
     promise: Promise | None
-    faults: tuple[DescriptionFault, ...]
-    remarks: tuple[Remark, ...]
+    faults: tuple[
+        DescriptionFault, ...
+    ]  # mistakes of the machine file or the set-up that explain it
+    remarks: tuple[Remark, ...]  # what else the user should know
     learnt: Fit | None = None
 
     number_format = ".4f"  # a tenth of a nanometre

@@ -23,6 +23,7 @@ from matstd.diagnosis.geometry import (
 )
 from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.search import FOUND_PRIOR_FACTOR, DiagnosisTask
+from matstd.twin.display import Displayed
 from matstd.twin.model import Effect, Model, columns, original_of, traits
 from matstd.twin.numbers import rms
 
@@ -59,8 +60,8 @@ class SingleChange:
     size: Estimate
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Trend:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Trend(Displayed):
     """What changed between several runs of one machine, and what did not."""
 
     runs: tuple[RunErrors, ...]

@@ -72,7 +72,8 @@ class Diagnosis(Tabular):
     Attributes:
         verdict: One of four; undecided where the noise would have to be far above the stated one
             and no repeats show it.
-        steps: The error falling, effect by effect.
+        steps: The error falling, effect by effect. Sizes to quote are `reported` of a step, which
+            rest on the touches alone; estimates of `fit` lean on what is usual.
         parts: Geometry, named effects and remainder, each with its weight.
         predicting: The model that predicts: what was added, with every member of its classes that
             predicts differently.
@@ -89,26 +90,28 @@ class Diagnosis(Tabular):
         laws: Laws learnt from what remains; None where nothing remains, or none were looked for.
     """
 
-    run: Run
+    run: Run  # the measurements
     verdict: Verdict
     steps: tuple[Step, ...]
     parts: VerdictParts
     predicting: Fit
     promise: Promise
     promise_before: Promise
-    candidates: tuple[Candidate, ...]
+    candidates: tuple[Candidate, ...]  # every effect of the library by itself, the best first
     structure: tuple[Structure, ...]
     left: tuple[Structure, ...]
     depends_on: tuple[Dependence, ...]
     where: tuple[Region, ...]
     detectable: tuple[Detectable, ...]
-    plans: tuple[Plan, ...]
-    geometry: LearntGeometry
-    faults: tuple[DescriptionFault, ...]
-    remarks: tuple[Remark, ...]
+    plans: tuple[Plan, ...]  # touches that would distinguish what this run does not
+    geometry: LearntGeometry  # what the run says of the machine's geometry
+    faults: tuple[
+        DescriptionFault, ...
+    ]  # mistakes of the machine file or the set-up that explain it
+    remarks: tuple[Remark, ...]  # what else the user should know
     choice: Choice | None = None
     trend: Trend | None = None
-    nearest: tuple[Offer, ...] = ()
+    nearest: tuple[Offer, ...] = ()  # effects nearest to what remains, each with its gain
     repeat: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     laws: Learning | None = None
 

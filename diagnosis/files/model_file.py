@@ -111,9 +111,9 @@ class SavedModel(Displayed):
             them, as unsure as they are large.
     """
 
-    model: Model
+    model: Model  # chain and effects
     estimates: Prior
-    source: SourceEntry
+    source: SourceEntry  # from which runs it was learnt, with which tool
     from_inner: Array
     reported: dict[str, tuple[Reported, ...]]
     determined: tuple[Determined, ...] = ()

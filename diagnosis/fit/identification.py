@@ -67,16 +67,16 @@ class Fit(Displayed):
             made again; None where it follows from the run.
     """
 
-    run: Run
-    model: Model
+    run: Run  # the measurements
+    model: Model  # chain and effects
     setups: tuple[Free, ...]
     tangents: tuple[Tangent, ...]
     prior: Prior
     X: Array
     y: Array
     used: Mask
-    solution: Solution
-    gross: GrossErrors
+    solution: Solution  # estimates, their covariance and the residual of the rows used
+    gross: GrossErrors  # touches that were left out
     noise: Noise
     widened: float = 1.0
     memory: Memory | None = None

@@ -96,7 +96,7 @@ class Learning:
     refused: LearntLaw | None
     refusal: Refusal | None  # why it was not
     held_out: tuple[HeldOut, ...]  # errors of touches left out
-    policy: LawPolicy
+    policy: LawPolicy  # thresholds of the search
     # effects of the library in whose place the laws stand, since they explain the run better; empty
     # where the laws stand beside every effect of the model
     instead_of: tuple[Effect, ...] = ()

@@ -62,8 +62,8 @@ SOMETIMES = ("*/*", *REPORT_FILES, "pictures/*.png", "compensation.json")
 """Files that not every compensation by tables leaves."""
 
 
-@dataclass(frozen=True, eq=False)
-class TableResults:
+@dataclass(frozen=True, eq=False, repr=False)
+class TableResults(Displayed):
     """Tables of controls that were written, read back and played on the exact twin."""
 
     done: tuple[VerifiedTables, ...]  # what the tables of every control correct and leave
@@ -71,8 +71,8 @@ class TableResults:
     refused: tuple[Harmful, ...]
 
 
-@dataclass(frozen=True, eq=False)
-class Shares:
+@dataclass(frozen=True, eq=False, repr=False)
+class Shares(Displayed):
     """What every error adds along a program or at poses."""
 
     touches: Touches  # the poses
@@ -160,9 +160,9 @@ class Compensation(Displayed):
     def tables(
         self,
         folder: str | Path,
-        controls: Iterable[str] = (),
+        controls: str | Iterable[str] = (),
         *,
-        opposite: Iterable[str] = (),
+        opposite: str | Iterable[str] = (),
         force: bool = False,
         progress: Progress = silent,
     ) -> TableResults:
@@ -326,9 +326,9 @@ def compensate(
     return out
 
 
-def _controls(argument: str, names: Iterable[str]) -> list[str]:
+def _controls(argument: str, names: str | Iterable[str]) -> list[str]:
     """Controls, each once."""
-    names = list(names)
+    names = [names] if isinstance(names, str) else list(names)
     for name in names:
         if name not in FORMATS:
             raise BadArgument(argument, name, f"one of {', '.join(FORMATS)}")

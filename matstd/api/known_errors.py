@@ -67,7 +67,10 @@ def drives_stated(model: str) -> Iterator[None]:
     try:
         yield
     except UnknownEffect as error:
-        expected = "expected --temperature, --rpm or --value for all that the model follows"
+        expected = (
+            "expected --temperature, --rpm or --value for all that the model follows, in Python "
+            "State(temperature=..., spindle_rpm=..., value=...)"
+        )
         raise DesignError(f"{model}: {error}; {expected}") from error
 
 

@@ -102,6 +102,8 @@ def _starting_model(given: StartingModel, run: Run) -> tuple[Model | None, Saved
         return given, None
     if isinstance(given, str) and given in (SETUP, GEOMETRY):
         return None, None
+    if isinstance(given, str) and not (Path(given).suffix or Path(given).exists()):
+        raise BadArgument("model", given, f"{GEOMETRY}, {SETUP} or a model file")
     saved = given if isinstance(given, SavedModel) else read_model(given, runs=[run])
     return saved.model, saved
 
@@ -132,6 +134,8 @@ def _joined(given: Sequence[Run | str], hold_out: Sequence[str]) -> Run:
     for name in hold_out:
         if name not in paths and name not in names:
             raise BadArgument("hold_out", name, f"one of {', '.join(names)}")
+    if not given:
+        raise BadArgument("runs", "none", "one run or more")
     runs = {}
     for name, one in zip(names, given, strict=True):
         run = one if isinstance(one, Run) else read_run(one)

@@ -55,7 +55,7 @@ class Chain(Displayed):
             depend on them.
     """
 
-    name: str
+    name: str  # as its file states it
     notation: str
     links: tuple[Link, ...]
     table_origin: Array = field(default_factory=lambda: np.zeros(3))

@@ -21,7 +21,7 @@ class Model(Displayed):
         effects: The physics in the model.
     """
 
-    chain: Chain
+    chain: Chain  # the machine
     effects: tuple[Effect, ...]
 
     @cached_property

@@ -30,10 +30,10 @@ class Run(Displayed):
     remarks: tuple[str, ...] = ()  # what the reader noticed and did about it, one clear line each
     date: datetime | None = None  # when it began; None where it is not recorded
     standard: str = ""  # name, serial number and digest of the probed one; "" where not recorded
-    # name of the probing program that made each touch, its number there, and the line of the
-    # program on which it begins, (N,) each; "" and 0 where not recorded
+    # name of the probing program that made each touch, (N,); "" where not recorded
     program: Labels = field(default_factory=no_labels)
-    touch: IntArray = field(default_factory=no_numbers)
+    touch: IntArray = field(default_factory=no_numbers)  # its number there, (N,); 0 for unknown
+    # line of the program on which it begins, (N,); 0 for unknown
     program_line: IntArray = field(default_factory=no_numbers)
 
     def __post_init__(self) -> None:
