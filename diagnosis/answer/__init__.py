@@ -6,6 +6,7 @@ shown, `next_measurement` touches that distinguish look-alikes, `proof` compares
 """
 
 from matstd.diagnosis.answer.ambiguity import ConfusionClass
+from matstd.diagnosis.answer.candidates import Candidate
 from matstd.diagnosis.answer.comparison import Comparison, GroupResidual, compare
 from matstd.diagnosis.answer.detectable import Detectable
 from matstd.diagnosis.answer.next_measurement import Plan
@@ -18,7 +19,7 @@ from matstd.diagnosis.answer.parts import (
 from matstd.diagnosis.answer.run_diagnosis import diagnose
 from matstd.diagnosis.answer.steps import Step
 from matstd.diagnosis.answer.trend import RunErrors, Trend
-from matstd.diagnosis.answer.verdict import Candidate, Diagnosis, Verdict
+from matstd.diagnosis.answer.verdict import Diagnosis, Verdict
 
 __all__ = [
     "Candidate",

@@ -5,12 +5,23 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from matstd.diagnosis.answer.alike import period_value
+from matstd.diagnosis.answer.ambiguity import ConfusionClass
+from matstd.diagnosis.evidence import ScaledEffect
 from matstd.diagnosis.fit import Fit
-from matstd.diagnosis.next_visit import greedy, separation
+from matstd.diagnosis.next_visit import (
+    candidate_targets,
+    candidate_touches,
+    greedy,
+    separation,
+)
+from matstd.diagnosis.regression import GrossErrors
+from matstd.diagnosis.search import DiagnosisTask
 from matstd.twin.model import columns
 from matstd.twin.record import Touches, stacked
 
 PLANNED_TOUCHES = 24  # touches of a plan
+MAX_PERIODS_PLANNED = 8  # most periods that a plan of touches distinguishes, the longest ones
 DEFAULT_PACE = 15.0  # time from touch to touch where the run does not state times, s
 MIN_SEPARATION = 1.0  # least separation of a useful plan, standard deviations
 
@@ -80,3 +91,40 @@ def _later(touches: Touches, offers: Touches) -> Touches:
     own = {k: np.full(len(offers), v[last]) for k, v in touches.value.items()}
     rpm = None if touches.spindle_rpm is None else np.full(len(offers), touches.spindle_rpm[last])
     return replace(offers, time=time, temperature=temperature, value=own, spindle_rpm=rpm)
+
+
+def plans(
+    task: DiagnosisTask,
+    added: tuple[ScaledEffect, ...],
+    classes: Sequence[ConfusionClass],
+    gross: GrossErrors,
+    rng: np.random.Generator | None,
+) -> tuple[Plan, ...]:
+    """For every found effect the touches that would distinguish it from its likeliest rival."""
+    if rng is None:
+        return ()
+    heads = [c.sized for c in classes]
+    out = []
+    for i, confusion in enumerate(classes):
+
+        def instead(rival: ScaledEffect, i: int = i) -> Fit:
+            return task.fit((*added, *heads[:i], rival, *heads[i + 1 :]), gross)
+
+        name, alike = heads[i].effect.name, confusion.alike
+        if alike is not None:
+            fits = [instead(other) for other in alike.others[:MAX_PERIODS_PLANNED]]
+            periods = [f"{p:.4g}" for p in alike.periods[:MAX_PERIODS_PLANNED]]
+            own = period_value(heads[i].effect)
+            names = (f"{name}@{own:.4g}", f"{name}@{','.join(periods)}")
+            offers = candidate_targets(task.run, alike.axis, rng)
+            found = plan(instead(heads[i]), fits, names, offers)
+            out += [replace(found, periods_of=name)] if found is not None else []
+        # the likeliest rival may be inseparable by any offer; then the next one is tried
+        for rival in confusion.rivals:
+            offers = candidate_touches(task.run, rng)
+            names = (name, rival.effect.name)
+            found = plan(instead(heads[i]), [instead(rival.sized)], names, offers)
+            if found is not None:
+                out.append(found)
+                break
+    return tuple(out)

@@ -10,8 +10,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from matstd.diagnosis.accuracy import Repeatability
+from matstd.diagnosis.answer.candidates import Candidate
 from matstd.diagnosis.answer.steps import named_probability
-from matstd.diagnosis.answer.verdict import Candidate, Dependence, Offer
+from matstd.diagnosis.answer.verdict import Dependence, Offer
 from matstd.diagnosis.evidence import (
     EffectSet,
     Progress,
@@ -90,6 +91,17 @@ def to_repeat(fit: Fit, repeats: Repeatability) -> IntArray:
     first = np.sort(np.unique(places, axis=0, return_index=True)[1])
     rows = [*worst[first], *np.delete(worst, first)]
     return np.array([row for row in rows if fit.used[row]][:MAX_REPEATED], dtype=np.int64)
+
+
+def beyond_doubt(left: Sequence[Structure], fit: Fit) -> tuple[Structure, ...]:
+    """Patterns that stand however the noise remembers, in a residual that exceeds what is stated.
+
+    One well below the stated uncertainty is allowed for, whatever pattern it has.
+    """
+    if float(np.std(fit.residual[fit.used] / fit.run.u[fit.used])) < POLICY.noise_ratio_covered:
+        return ()
+    is_modelled = fit.memory is not None and fit.memory.is_filtered
+    return tuple(s for s in left if not is_modelled or s.p_value < POLICY.p_beside_memory)
 
 
 def structures(final: SearchState, progress: Progress) -> tuple[Structure, ...]:

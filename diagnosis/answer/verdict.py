@@ -7,6 +7,7 @@ from typing import Any, Self
 import numpy as np
 
 from matstd.diagnosis.accuracy import Promise, promise
+from matstd.diagnosis.answer.candidates import Candidate
 from matstd.diagnosis.answer.detectable import Detectable
 from matstd.diagnosis.answer.next_measurement import Plan
 from matstd.diagnosis.answer.parts import VerdictParts, geometry_part
@@ -35,16 +36,18 @@ class Verdict(Enum):
     UNDECIDED = "undecided"
 
 
-@dataclass(frozen=True, slots=True)
-class Candidate:
-    """What one effect of the library by itself would do for the starting model; mm."""
+def verdict_of(parts: VerdictParts, is_found: bool, is_doubtful: bool) -> Verdict:
+    """The word of the file.
 
-    effect: str
-    kind: str
-    p_value: float
-    rms: float
-    test_rms: float
-    log_odds: float
+    Args:
+        is_found: Whether the diagnosis itself added an effect.
+        is_doubtful: Whether the noise would have to be incredibly large.
+    """
+    if parts.is_unexplained:
+        return Verdict.UNEXPLAINED
+    if is_found and parts.headline:
+        return Verdict.MISSING
+    return Verdict.UNDECIDED if is_doubtful or is_found else Verdict.NONE
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,7 +6,7 @@ was chosen, which from here on is the set that is reported, drawn and saved. Blo
 data are correlated: poses, set-ups, stretches of time longer than the memory of what is left.
 """
 
-from matstd.diagnosis.choice.chosen_set import choice_remarks, field_shares, with_chosen_set
+from matstd.diagnosis.choice.chosen_set import choice_remarks, with_chosen_set
 from matstd.diagnosis.choice.noise_memory import search_with_memory
 from matstd.diagnosis.choice.prediction import Choice, candidate_effects, chosen_by_prediction
 
@@ -15,7 +15,6 @@ __all__ = [
     "candidate_effects",
     "choice_remarks",
     "chosen_by_prediction",
-    "field_shares",
     "search_with_memory",
     "with_chosen_set",
 ]

@@ -100,7 +100,27 @@ def _chance(choice: Choice) -> float:
     return float(stdtr(count - 1, -gain.mean() / (gain.std(ddof=1) / np.sqrt(count))))
 
 
-def field_shares(fit: Fit, effect: Effect) -> Noticed:
+def choice_remarks(choice: Choice | None, fit: Fit) -> tuple[Remark, ...]:
+    """Every way of a choice with its plain error of blocks left out, and the drives of a field.
+
+    Args:
+        fit: With what the choice led to.
+    """
+    if choice is None:
+        return ()
+    names = {s.effect.name for s in choice.best.effects}
+    found = [e for e in fit.model.effects if e.name in names]
+    chosen = noticed(
+        What.CHOSEN_BY_PREDICTION,
+        chosen=choice.best.name,
+        blocks=choice.blocks,
+        tried=tuple((rule.name, rule.error) for rule in choice.rules),
+        is_empty=not found,
+    )
+    return (chosen, *(_field_shares(fit, e) for e in found if traits(e).parameter_drives))
+
+
+def _field_shares(fit: Fit, effect: Effect) -> Noticed:
     """What every drive of a field explains of the deviations, the most first."""
     theta = fit.theta[fit.of_effect(effect.name)]
     C = columns([effect], fit.run.touches)[fit.used] * theta
@@ -110,11 +130,3 @@ def field_shares(fit: Fit, effect: Effect) -> Noticed:
     sizes = {d: float(np.std(C[:, places == d].sum(axis=1))) for d in drives}
     ranked = sorted(sizes.items(), key=lambda item: -item[1])
     return noticed(What.FIELD_SHARES, axis=own.axis, sizes=tuple(ranked[:MAX_LISTED_DRIVES]))
-
-
-def choice_remarks(choice: Choice, found: Sequence[Effect]) -> tuple[Remark, ...]:
-    """Every way of a choice with its plain error of blocks left out."""
-    tried = tuple((rule.name, rule.error) for rule in choice.rules)
-    way, blocks = choice.best.name, choice.blocks
-    what = What.CHOSEN_BY_PREDICTION
-    return (noticed(what, chosen=way, blocks=blocks, tried=tried, is_empty=not found),)

@@ -23,8 +23,10 @@ from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.regression import GrossErrors, Memory
 from matstd.diagnosis.search import DiagnosisTask, SearchState, clearly_best, likeliest_drift
+from matstd.twin.fields import moved_components
 from matstd.twin.frames import Array, IntArray
-from matstd.twin.library import proposals
+from matstd.twin.library import parse_effect, proposals
+from matstd.twin.machine import Chain, Symbol
 from matstd.twin.model import Effect, traits
 from matstd.twin.numbers import rms
 from matstd.twin.record import Touches
@@ -144,10 +146,25 @@ def _judged(
     return ChoiceRule(name, way(task), np.array(errors), np.array([len(g) for g in groups]))
 
 
-def candidate_effects(touches: Touches) -> list[Effect]:
-    """All effects that a diagnosis may find in a run: proposals of the library, field of drives."""
+def candidate_effects(touches: Touches, is_bare: bool = False) -> list[Effect]:
+    """All effects that a diagnosis may find in a run: proposals of the library, field of drives.
+
+    Args:
+        is_bare: Whether the model has no geometry; then scale and low degrees of every axis that
+            moved are missing, too.
+    """
     warm = field(touches)
-    return [*proposals(touches), *([warm] if warm is not None else [])]
+    curves = moved_components(touches) if is_bare else ()
+    return [
+        *proposals(touches),
+        *([warm] if warm is not None else []),
+        *(_low_degrees(touches.chain, symbol) for symbol in curves),
+    ]
+
+
+def _low_degrees(chain: Chain, symbol: Symbol) -> Effect:
+    degree = 1 if chain.link(symbol.link).kind == "rotary" else 2
+    return parse_effect(f"geometric({symbol.name},{degree})", chain)
 
 
 def thinned(task: DiagnosisTask, fit: Fit) -> DiagnosisTask:

@@ -14,10 +14,12 @@ class Policy:
     # kind of test, all its trials together. One run in a thousand is what a user accepts who runs
     # one a week
     false_alarm: float = 1e-3
-    # least gain of log evidence, and of the log density of held-out poses, of an effect: odds of
-    # twenty to one, which pay for what the prior of its size leaves open
+    # least gain of log evidence of an effect: odds of twenty to one, which pay for what the prior
+    # of its size leaves open
     log_evidence_gain: float = 3.0
-    # least number of touches that an effect explains; a single one may be an accident
+    # least effective number of touches that an effect explains, ``(sum d^2)^2 / sum d^4`` of what
+    # it changes; a single one may be an accident. Without this test a slip of one touch was named
+    # beside an effect of ten times its usual size
     touches_explained: float = 1.5
     # least coefficient of expansion that a found effect may have, 1/K: a control that corrects for
     # steel where nothing expands shows -12

@@ -1,10 +1,9 @@
 """Sets of effects, and the tests that every member of a set must pass.
 
 A member stands if chance, its freedom and what it predicts speak for it, with all the others in
-place. What it predicts is asked twice: of poses that were left out, and of whole parts of the time
-and whole set-ups. A pose that is left out has neighbours that were touched
-with the same sensors at nearly the same temperatures: what merely follows a slow unknown between
-them predicts a pose, and fails where an hour is left out as a whole.
+place. What it predicts is asked of whole parts of the time and of whole set-ups. A pose that is
+left out would be no test: it has neighbours that were touched with the same sensors at nearly the
+same temperatures, and what merely follows a slow unknown between them predicts it.
 """
 
 from collections.abc import Sequence
@@ -15,7 +14,6 @@ import numpy as np
 from matstd.diagnosis.accuracy import domains
 from matstd.diagnosis.evidence import EffectSet, ResidualSpace, ScaledEffect, Signatures
 from matstd.diagnosis.policy import POLICY
-from matstd.diagnosis.search.missing_driver import is_unrecorded
 from matstd.twin.frames import Array, IntArray
 from matstd.twin.model import Effect, is_tunable
 
@@ -77,64 +75,32 @@ class EffectSubset:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Verified:
-    """Tests of one member with all the others in place; a later one is 0 where an earlier fails."""
+    """Tests of one member with all the others in place."""
 
     member: Member
     p_value: float  # probability by chance, corrected for grid and number of candidates
     evidence: float  # gain of log evidence by it
-    density: float = 0.0  # gain of the held-out log predictive density by it
-    # effective number it explains, ``(sum d^2)^2 / sum d^4`` of what it changes
-    touches: float = 0.0
-    # least gain of the log predictive density over domains of which blocks are left out (parts of
-    # the time, set-ups)
-    domain_density: float = 0.0
-
-    @property
-    def stands(self) -> bool:
-        """Whether all tests are passed."""
-        if is_unrecorded(self.member.effect):  # it predicts nothing, so no other hour either
-            return self.stands_by_poses
-        return self.stands_by_poses and self.domain_density > 0.0
-
-    @property
-    def stands_by_poses(self) -> bool:
-        """Whether the tests are passed that leave out one pose at a time."""
-        return (
-            self.is_beyond_chance
-            and self.density > POLICY.log_evidence_gain
-            and self.touches > POLICY.touches_explained
-        )
-
-    @property
-    def is_beyond_chance(self) -> bool:
-        """Whether it explains more than noise and its own freedom would."""
-        return self.p_value < POLICY.false_alarm and self.evidence > POLICY.log_evidence_gain
+    # whether it is beyond chance, explains more than an accident and predicts what was left out;
+    # what stands for a driver that was not recorded need not predict
+    stands: bool
 
 
-def tested(others: EffectSet, whole: EffectSet, quick: Verified) -> Verified:
-    """The tests of a member that is beyond chance: what it predicts.
+def is_general(others: EffectSet, whole: EffectSet) -> bool:
+    """Whether a member explains more than an accident, and predicts what was left out.
 
     Args:
         others: The set without it.
         whole: The set with it.
-        quick: Its probability and evidence.
     """
-    count = len(whole.complement.u)
-    changed = (others.residual - whole.residual)[:count] ** 2
-    found = replace(
-        quick,
-        density=float(whole.held_out_log_density - others.held_out_log_density),
-        touches=float(changed.sum()) ** 2 / max(float(changed @ changed), 1e-300),
-    )
-    if not found.stands_by_poses:
-        return found
+    changed = (others.residual - whole.residual)[: len(whole.complement.u)] ** 2
+    touches = float(changed.sum()) ** 2 / max(float(changed @ changed), 1e-300)
     known = domains(whole.complement.touches, whole.complement.used)
-    gains = [
+    parts = [known[name] for name in LEFT_OUT if name in known] or [whole.complement.groups]
+    return touches > POLICY.touches_explained and all(
         by_blocks(whole, blocks).held_out_log_density
-        - by_blocks(others, blocks).held_out_log_density
-        for blocks in (known[name] for name in LEFT_OUT if name in known)
-    ]
-    return replace(found, domain_density=min(gains, default=found.density))
+        > by_blocks(others, blocks).held_out_log_density
+        for blocks in parts
+    )
 
 
 def by_blocks(effects: EffectSet, groups: tuple[IntArray, ...]) -> EffectSet:

@@ -1,17 +1,16 @@
 """The moves of the search among sets of effects of one pool: add, exchange, remove, refine.
 
-A first step that is merely the best single one may be a compromise between two real effects; so a
-few different sets are carried along, and in each every member is offered for exchange whenever
-another has joined. Grids of inner parameters are coarse: between two points lies an effect that
-neither fits, and what the better one leaves looks like a further effect. So members are moved to
-where the run wants them, and the search continues from there. A set stands only if every member
-passes its tests (`members`) with the others in place.
+A first step that is merely the best single one may be a compromise between two real effects; so
+every member is offered for exchange whenever another has joined, and where the set with the best
+one does not stand, that with another one may. Grids of inner parameters are coarse: between two
+points lies an effect that neither fits, and what the better one leaves looks like a further effect.
+So members are moved to where the run wants them, and the search continues from there. A set stands
+only if every member passes its tests (`members`) with the others in place.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from functools import cached_property
-from itertools import count
 
 import numpy as np
 
@@ -32,9 +31,9 @@ from matstd.diagnosis.search.members import (
     Member,
     Verified,
     explained,
+    is_general,
     set_of,
     single,
-    tested,
 )
 from matstd.diagnosis.search.missing_driver import (
     follows_driver,
@@ -49,12 +48,9 @@ from matstd.twin.model import Effect, original_of, traits
 from matstd.twin.thermal import drives
 
 MIN_CORRELATION_ALIKE = 0.95
-"""Correlation of two fitted signatures from which only one of the sets is carried on."""
+"""Correlation of two fitted signatures from which only one of the sets is tried."""
 
-MAX_CARRIED_SETS = 4
-"""Most sets that are carried from one size to the next. With the best one alone the search of a
-printer's frame stops at two effects in white noise, takes the memory of its noise for patterns and
-states uncertainties a third too small."""
+MAX_EXTENSIONS = 4  # most sets of one member more that are tried, until one stands
 
 MAX_TURNS = 3  # most turns of growing a set and of refining it
 
@@ -205,12 +201,13 @@ class Search:
         """Tests of one member with the others in place."""
         others = self.evaluate(whole.others(member))
         p = float(score_all(others.effects, member.signature).p[0])
-        quick = Verified(
-            member=member,
-            p_value=self.corrected(member, p),
-            evidence=float(whole.effects.evidence - others.effects.evidence),
+        chance = self.corrected(member, p)
+        evidence = float(whole.effects.evidence - others.effects.evidence)
+        is_beyond_chance = chance < POLICY.false_alarm and evidence > POLICY.log_evidence_gain
+        stands = is_beyond_chance and (
+            is_unrecorded(member.effect) or is_general(others.effects, whole.effects)
         )
-        return tested(others.effects, whole.effects, quick) if quick.is_beyond_chance else quick
+        return Verified(member, chance, evidence, stands)
 
     def corrected(self, member: Member, p: float) -> float:
         """Probability with the scan of the grid and the number of candidates paid for."""
@@ -227,7 +224,7 @@ class Search:
         best = self.backward(self.polished(self.evaluate(start)))
         for _ in range(MAX_TURNS):
             grown = self.backward(self.grown(best))
-            best = self.backward(self.needed(self.refined(grown)))
+            best = self.backward(self.refined(grown))
             is_better = best.evidence > grown.evidence + POLICY.log_evidence_gain
             if best.names == grown.names and not is_better:
                 break
@@ -235,39 +232,28 @@ class Search:
 
     def grown(self, best: EffectSubset) -> EffectSubset:
         """A set with one member more and more, as long as every member stands."""
-        carried = [best]
-        for size in count(len(best.members) + 1):
-            if self.budget.is_spent:
+        while not self.budget.is_spent:
+            self.progress(min((len(best.members) + 1) / USUAL_SET_SIZE, 1.0), "sets of effects")
+            least = best.evidence + POLICY.log_evidence_gain
+            sets = map(self.polished, self.extensions(best))
+            better = next((s for s in sets if s.evidence > least and self.stands(s)), None)
+            if better is None:
                 break
-            grown = [s for c in carried for s in self.extensions(c, MAX_CARRIED_SETS)]
-            carried = self.kept(self.polished(s) for s in grown)
-            self.progress(min(size / USUAL_SET_SIZE, 1.0), "sets of effects")
-            better = [c for c in carried if c.evidence > best.evidence + POLICY.log_evidence_gain]
-            standing = next((c for c in better if self.stands(c)), None)
-            if standing is None:
-                break
-            best = standing
+            best = better
         return best
 
-    def extensions(self, chosen: EffectSubset, most: int) -> list[EffectSubset]:
+    def extensions(self, chosen: EffectSubset) -> Iterator[EffectSubset]:
         """The best sets of one member more, no two alike in what they explain."""
-        out: list[EffectSubset] = []
         directions: list[Array] = []
         scores = self.scores(chosen)
-        for variant in self.ranking(chosen)[: 12 * most]:
-            if len(out) >= most or scores.evidence[variant] <= chosen.evidence:
+        for variant in self.ranking(chosen)[: 12 * MAX_EXTENSIONS]:
+            if len(directions) >= MAX_EXTENSIONS or scores.evidence[variant] <= chosen.evidence:
                 break
             member = self.member(chosen, variant)
             direction = explained(chosen.effects, member.scale * member.signature.C)
             if all(abs(direction @ d) < MIN_CORRELATION_ALIKE for d in directions):
                 directions.append(direction)
-                out.append(self.evaluate((*chosen.members, member)))
-        return out
-
-    def kept(self, sets: Iterable[EffectSubset]) -> list[EffectSubset]:
-        """The few best of some sets, each once."""
-        unique = {tuple(sorted(m.key[:-1] for m in s.members)): s for s in sets}
-        return sorted(unique.values(), key=lambda s: -s.evidence)[:MAX_CARRIED_SETS]
+                yield self.evaluate((*chosen.members, member))
 
     def polished(self, chosen: EffectSubset) -> EffectSubset:
         """Exchange members for better ones, one at a time, until none is better."""
@@ -289,18 +275,6 @@ class Search:
         moved = refined_set(self.complement, chosen.sized, fixed=self.fixed)
         better = self.evaluate(map(self.placed, moved))
         return better if better.evidence > chosen.evidence else chosen
-
-    def needed(self, chosen: EffectSubset) -> EffectSubset:
-        """The set without a member that the others, refined without it, make superfluous.
-
-        Without this move a printer's frame is predicted to 4.1 instead of 2.8 µm.
-        """
-        for member in reversed(chosen.members):
-            others = self.refined(self.evaluate(chosen.others(member)))
-            whole = self.evaluate((*others.members, member))
-            if others.members and not self.verified(whole, member).stands:
-                return others
-        return chosen
 
     def backward(self, chosen: EffectSubset) -> EffectSubset:
         """Take out members that a better one made superfluous, the weakest first."""

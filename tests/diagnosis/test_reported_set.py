@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -222,7 +223,7 @@ def test_ways_of_a_choice_are_reported_with_their_errors() -> None:
     nothing = ChoiceRule("nothing", (), np.array([3.0, 4.0]) * UM, np.array([10, 30]))
     way = ChoiceRule("thermal field", (), np.array([1.0, 1.0]) * UM, np.array([10, 30]))
     choice = Choice((nothing, way), way, 2, None)
-    (remark,) = choice_remarks(choice, [])
+    (remark,) = choice_remarks(choice, SimpleNamespace(model=SimpleNamespace(effects=())))
     plain = np.sqrt((10 * 3.0**2 + 30 * 4.0**2) / 40)
     assert [error / UM for _, error in remark.tried] == pytest.approx([plain, 1.0])
     table = choice_table(choice)

@@ -162,7 +162,7 @@ def test_a_member_that_only_mops_up_falls_once_the_other_is_refined(planted) -> 
     both = search.evaluate([search.placed(wrong), search.placed(mop)])
     alone = search.evaluate([search.placed(wrong)])
     assert both.evidence > alone.evidence + POLICY.log_evidence_gain
-    assert names_of(search.needed(both)) == {"thermal-lag(EZZ)"}
+    assert names_of(search.run(both.members)) == {"thermal-lag(EZZ)"}
 
 
 def test_a_later_way_must_predict_clearly_better() -> None:
