@@ -4,8 +4,8 @@ A first step that is merely the best single one may be a compromise between two 
 every member is offered for exchange whenever another has joined, and where the set with the best
 one does not stand, that with another one may. Grids of inner parameters are coarse: between two
 points lies an effect that neither fits, and what the better one leaves looks like a further effect.
-So members are moved to where the run wants them, and the search continues from there. A set stands
-only if every member passes its tests (`members`) with the others in place.
+So members are moved to where the run wants them before another one is looked for. A set stands only
+if every member passes its tests (`members`) with the others in place.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -51,8 +51,6 @@ MIN_CORRELATION_ALIKE = 0.95
 """Correlation of two fitted signatures from which only one of the sets is tried."""
 
 MAX_EXTENSIONS = 4  # most sets of one member more that are tried, until one stands
-
-MAX_TURNS = 3  # most turns of growing a set and of refining it
 
 USUAL_SET_SIZE = 6
 """Effects at which a search is reported as nearly done; it continues while more pass."""
@@ -221,17 +219,11 @@ class Search:
         Args:
             start: Members of a set to begin with, as from an earlier round.
         """
-        best = self.backward(self.polished(self.evaluate(start)))
-        for _ in range(MAX_TURNS):
-            grown = self.backward(self.grown(best))
-            best = self.backward(self.refined(grown))
-            is_better = best.evidence > grown.evidence + POLICY.log_evidence_gain
-            if best.names == grown.names and not is_better:
-                break
-        return best
+        best = self.refined(self.polished(self.evaluate(start)))
+        return self.backward(self.grown(self.backward(best)))
 
     def grown(self, best: EffectSubset) -> EffectSubset:
-        """A set with one member more and more, as long as every member stands."""
+        """A set with one member more and more, refined, as long as every member stands."""
         while not self.budget.is_spent:
             self.progress(min((len(best.members) + 1) / USUAL_SET_SIZE, 1.0), "sets of effects")
             least = best.evidence + POLICY.log_evidence_gain
@@ -239,7 +231,7 @@ class Search:
             better = next((s for s in sets if s.evidence > least and self.stands(s)), None)
             if better is None:
                 break
-            best = better
+            best = self.refined(better)
         return best
 
     def extensions(self, chosen: EffectSubset) -> Iterator[EffectSubset]:

@@ -153,8 +153,8 @@ def test_what_a_coarse_grid_leaves_is_no_second_effect(planted) -> None:
     assert next(iter(member.effect.tuning.values())) == pytest.approx(tau, abs=MINUTE)
 
 
-def test_a_member_that_only_mops_up_falls_once_the_other_is_refined(planted) -> None:
-    """A lag at the wrong time constant leaves what a second lag of the same component takes up."""
+def test_a_lag_at_a_wrong_time_constant_gets_no_second_one(planted) -> None:
+    """What it leaves a second lag of the same component would take up; it is moved first."""
     space = planted({"thermal-lag(EZZ)": ((1500.0,), 5.0)})
     search = search_in(space, ("thermal-lag(EZZ)", "thermal-lag(EZX)", "backlash(X)"))
     lag, other = library(space, ("thermal-lag(EZZ)", "thermal-lag(EZX)"))
@@ -162,7 +162,9 @@ def test_a_member_that_only_mops_up_falls_once_the_other_is_refined(planted) -> 
     both = search.evaluate([search.placed(wrong), search.placed(mop)])
     alone = search.evaluate([search.placed(wrong)])
     assert both.evidence > alone.evidence + POLICY.log_evidence_gain
-    assert names_of(search.run(both.members)) == {"thermal-lag(EZZ)"}
+    found = search.run(alone.members)
+    assert names_of(found) == {"thermal-lag(EZZ)"}
+    assert found.members[0].effect.tuning["tau"] == pytest.approx(1500.0, rel=0.01)
 
 
 def test_a_later_way_must_predict_clearly_better() -> None:
