@@ -10,6 +10,8 @@ from collections.abc import Callable
 from pathlib import Path
 
 LOGS = "LOG.TXT ..."  # logs of the control, whose names only the user knows
+AUTO = "--auto"  # every effect that is found; without it a second diagnosis adds the first one
+PLANTED = "thermal-lag(EZZ)=12um,tau=15min"  # in a trial on the twin: what the model does not know
 RUN = "RUN.csv"  # a run that is still to be measured
 FEWEST_OF_A_TREND = 3  # runs of one machine, as `matstd trend` asks
 
@@ -53,10 +55,11 @@ def _design(args: Namespace) -> Step:
     kinds = (out / "programs").glob("*_A_*.*")
     program = next((f"*_A_*{p.suffix}" for p in sorted(kinds) if p.suffix in (".H", ".ngc")), "*.H")
     where = ["--standard", out / "standard.toml", "--machine", out / "machine.toml"]
-    run = ["--random-errors", "--body-degC", "20", "-o", _beside(args.output, "run.csv")]
+    body = ["--body-degC", "20", "-o", _beside(args.output, "run.csv")]
+    run = ["--random-errors", "--add", PLANTED, *body]
     words = called("simulate", *where, *run, more=f"{shlex.quote(str(out / 'programs'))}/{program}")
     sheet = out / "setup" / "setup.html"
-    return words, f"a trial on the twin; on the machine follow {sheet}"
+    return words, f"a trial on the twin with a growth to be found; on the machine follow {sheet}"
 
 
 def _run_file(args: Namespace) -> Step:
@@ -65,12 +68,12 @@ def _run_file(args: Namespace) -> Step:
         return None
     standard = getattr(args, "standard", None)
     probed = ["--standard", standard] if standard else []
-    words = called("diagnose", args.output, *probed, "-o", _beside(args.output, "diagnosis"))
+    words = called("diagnose", args.output, *probed, AUTO, "-o", _beside(args.output, "diagnosis"))
     return words, "what the model lacks"
 
 
 def _control_test(args: Namespace) -> Step:
-    return called("diagnose", Path(args.output) / "run.csv", "-o", "diagnosis"), ""
+    return called("diagnose", Path(args.output) / "run.csv", AUTO, "-o", "diagnosis"), ""
 
 
 def _replan(args: Namespace) -> Step:
@@ -90,7 +93,7 @@ def _calibrate(args: Namespace) -> Step:
 
 
 def _compare(args: Namespace) -> Step:
-    return called("diagnose", args.run_file, "-o", "diagnosis"), "what the model lacks"
+    return called("diagnose", args.run_file, AUTO, "-o", "diagnosis"), "what the model lacks"
 
 
 def _thermal(args: Namespace) -> Step:
@@ -112,7 +115,7 @@ def _errors(args: Namespace) -> list[object]:
 def _probed_again(args: Namespace) -> str:
     """What the same programs show of a machine that is corrected."""
     if args.errors:  # of a machine file; a model predicts
-        return called("diagnose", "-o", "after", more=RUN)
+        return called("diagnose", AUTO, "-o", "after", more=RUN)
     return called("compare", "--model", args.model, "-o", "after", more=RUN)
 
 
@@ -145,7 +148,7 @@ def _sensitivity(args: Namespace) -> Step:
 def _uncertainty(args: Namespace) -> Step:
     runs = args.run_files
     if not args.model:
-        words = called("diagnose", *runs, "--standard", args.standard, "-o", "diagnosis")
+        words = called("diagnose", *runs, "--standard", args.standard, AUTO, "-o", "diagnosis")
         return words, "a model in uncertainty --model corrects results and lowers U"
     if len(runs) >= FEWEST_OF_A_TREND:
         return called("trend", *runs, "-o", "trend"), "whether the machine stays as it was"
@@ -214,7 +217,7 @@ def _new(args: Namespace) -> Step:
             "after its numbers are those of your machine",
         ),
         "project": (called("design", output, "-o", folder), ""),
-        "run": (called("diagnose", output, "-o", _beside(output, "diagnosis")), ""),
+        "run": (called("diagnose", output, AUTO, "-o", _beside(output, "diagnosis")), ""),
         "effect": (called("effects", "--effects", output), "reads it and tries it"),
     }[args.kind]
 

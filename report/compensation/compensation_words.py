@@ -1,6 +1,6 @@
 """What tables and compensated programs correct and what remains, in sentences."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -53,6 +53,7 @@ _TITLES = {
     "heidenhain": "iTNC 530 positioning tables (.COM)",
 }
 
+_GROWN = 1.01  # times an error of which more remains than there was, beyond rounding
 MAX_NAMED_ERRORS = 5  # errors that a control cannot represent, named on the console
 
 
@@ -89,6 +90,19 @@ def held_words(left: UncorrectedError) -> str:
     return f"{left.name} ({digits(left.rms / UM)} of {digits(left.before / UM)} µm remain)"
 
 
+def grown_sentence(left: Sequence[UncorrectedError]) -> str:
+    """Why more of some errors remains than there was; empty where nothing has grown."""
+    grown = [one.name for one in left if one.rms > _GROWN * one.before]
+    if not grown:
+        return ""
+    named = ", ".join(grown[:MAX_NAMED_ERRORS]) + (" ..." if len(grown) > MAX_NAMED_ERRORS else "")
+    return (
+        f"more of {named} remains than there was: a table is right on the lines through the datum; "
+        "beside them, as after a turn of the table, its correction can add to the error. What "
+        "remains of all errors together is the first figure"
+    )
+
+
 def left_out_sentence(axes: tuple[str, ...]) -> str:
     """Which axes have no table, and why."""
     which, it = ("a table is", "it") if len(axes) == 1 else ("tables are", "they")
@@ -109,5 +123,7 @@ def table_lines(played: VerifiedTables) -> Iterator[tuple[str, bool]]:
     if held:
         words = few([held_words(left) for left in held], MAX_NAMED_ERRORS)
         yield f"- cannot represent, rms over the workspace: {words}", False
+        if grown := grown_sentence(held):
+            yield f\"- {grown}\", False
     elif not played.left_out:
         yield "- represents every error of the model", False

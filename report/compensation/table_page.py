@@ -9,6 +9,7 @@ from matstd.report.compensation.compensation_pictures import draw_errors_left, d
 from matstd.report.compensation.compensation_words import (
     control_title,
     extent_of,
+    grown_sentence,
     left_out_sentence,
     result_sentence,
     small,
@@ -123,8 +124,10 @@ def _control(played: VerifiedTables, chain: Chain) -> list[Section]:
         f"Files: {', '.join(played.files)}."
     )
     held = []
+    if grown := grown_sentence([e for e in result.left if e.rms > least]):
+        held = [f"{capital(grown)}."]
     if played.left_out:
-        held = [f"{capital(left_out_sentence(played.left_out))}."]
+        held.append(f"{capital(left_out_sentence(played.left_out))}.")
     elif not rows:
         held = ["It represents every error of the model."]
     return [

@@ -20,6 +20,7 @@ from matstd.twin.words import listed
 
 _UNITS = {"mm": ("µm", UM), "rad": ("µrad", URAD), "1": ("ppm", 1e-6)}
 
+_LARGE = 2.0  # times its usual size from which on a line of a rotary axis is explained
 _TURNS = {"A": "X", "B": "Y", "C": "Z"}  # direction of the rotation that a letter denotes
 
 ARM = (
@@ -215,14 +216,23 @@ def rotary_lines(geometry: LearntGeometry) -> list[str]:
 
 
 def _rotary(rows: Sequence[GeometryRow]) -> str:
-    """`line and zero of C: EX0C 12.3 ± 1.0 µm, ..., EC0C not determined (usual: ± 64 µm, ...)`."""
+    """`line and zero of C: EX0C 12.3 ± 1.0 µm, ..., EC0C not determined; usual ± 64 µm, ...`."""
     parts = [f"{r.symbol} {value_words(r) if r.is_determined else 'not determined'}" for r in rows]
+    large = [r for r in rows if r.is_determined and r.times_usual > _LARGE and not r.is_far]
+    note = ""
+    if large:
+        named = ", ".join(f"{r.symbol} has {digits(r.times_usual, 2)} times that" for r in large)
+        note = (
+            f". {named}: the model corrects it; {POLICY.far_line:g} times and more is taken for a "
+            "mistake in the machine file"
+        )
     sizes = {}
     for row in rows:
         unit, factor = _UNITS[row.unit]
         sizes[unit] = f"± {digits(row.expected / factor, 2)} {unit}"
     return (
         f"line and zero of {rows[0].axes[0]}: {', '.join(parts)}; usual {', '.join(sizes.values())}"
+        f"{note}"
     )
 
 

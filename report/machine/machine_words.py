@@ -16,7 +16,9 @@ from matstd.twin.words import listed
 PLAIN = "Bodies are drawn from the chain, not to scale."
 _ASSUMED = (
     "No errors are given. Listed are those that this machine can have, each linear over its travel "
-    "in the size expected of its class; all are switched off at first: switch them on one by one."
+    "in the size expected of its class; all are switched off at first: switch them on one by one. "
+    "Errors of a spindle that is not programmed and of the set-up, which the error parameters of a "
+    "design count too, are left out."
 )
 _NAMED = 3  # errors that the box at the head names
 _OWN_BODIES = "Bodies of {} are from your files."

@@ -24,7 +24,12 @@ from matstd.report.pages.standard_sections import (
     making_sections,
     patch_table,
 )
-from matstd.report.pages.study_page import Shown, draw_study_volumes, study_sections
+from matstd.report.pages.study_page import (
+    Shown,
+    draw_study_volumes,
+    parameters_words,
+    study_sections,
+)
 from matstd.report.plots import draw_order, draw_touch_curves, draw_touches
 from matstd.report.scenes import draw_standard
 from matstd.report.words import (
@@ -37,6 +42,7 @@ from matstd.report.words import (
 )
 from matstd.twin.errors import DesignError
 from matstd.twin.units import UM
+from matstd.twin.words import listed
 
 _STEP_FACE = "largest deviation of a STEP face from its design"
 
@@ -167,8 +173,8 @@ def _key(design: Design) -> list[KeyFigure]:
     return [
         KeyFigure(
             um(own.rms_user),
-            f"remaining uncertainty of the tool point in your workspace, rms, after {touches} "
-            f"touches of {um(design.brief.noise)} noise (predicted)",
+            f"remaining uncertainty of the tool point in your workspace, rms, after the {touches} "
+            f"identifying touches of {um(design.brief.noise)} noise (predicted)",
         ),
         *best,
         KeyFigure(
@@ -205,10 +211,20 @@ def _opening(design: Design, folder: Path, remarks: Sequence[str]) -> Section:
     words = (
         f"{features_words(body, design.placement.family)} on one body, "
         f"{len(plan)} touches at {plural(_poses(design), 'table pose')} in about "
-        f"{design.programs.duration / 60.0:.0f} minutes. Chain `{chain.notation}`, "
-        f"{len(chain.symbols)} error parameters."
+        f"{design.programs.duration / 60.0:.0f} minutes: {_roles(design)}. "
+        f"Chain `{chain.notation}`, {parameters_words(chain)}."
     )
     return Section(sentences=[words], warnings=[*assumed, *remarks])
+
+
+def _roles(design: Design) -> str:
+    """What the touches of a visit are for: 480 identify, 110 prove, 60 begin the visits."""
+    placement, plan = design.placement, design.plan
+    identify, prove = len(placement.requests), len(placement.proof)
+    words = [f"{identify} identify the errors", f"{prove} prove the model"]
+    if more := len(plan) - identify - prove:
+        words.append(f"{more} repeat one point of a ball, at the beginning of every visit")
+    return listed(words)
 
 
 def _poses(design: Design) -> int:
@@ -254,7 +270,8 @@ def _probing(design: Design) -> list[Section]:
     plan, poses, times = design.plan, _poses(design), design.times
     come = "The poses come in mixed order and twice" if poses != 1 else "The pose comes twice"
     intro = (
-        f"{len(plan)} touches in {len(plan.visits)} visits to {plural(poses, 'table pose')}. "
+        f"{len(plan)} touches in {len(plan.visits)} visits to {plural(poses, 'table pose')}: "
+        f"{_roles(design)}. "
         f"{come}, the second time in reverse order and from the other side. Each visit begins with "
         f"the same point of a datum sphere, so that drift and reversal can be distinguished from "
         f"geometry. {times.words}"
@@ -270,9 +287,9 @@ def _probing(design: Design) -> list[Section]:
         Picture("plan_touches.png", "Touched points and normals.", draw_touches(plan)),
         Picture("plan_order.png", sequence, draw_order(plan)),
     ]
-    listed = Table(("program", "touches", "minutes"), programs)
+    files = Table(("program", "touches", "minutes"), programs)
     return [
-        Section("Probing", sentences=[intro], table=listed, notes=[_CHECKED]),
+        Section("Probing", sentences=[intro], table=files, notes=[_CHECKED]),
         Section(fold="Cost of the order", is_for_screen=True, table=times.orders),
         Section(fold="Reach, touches and their order", is_for_screen=True, pictures=pictures),
     ]

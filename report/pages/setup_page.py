@@ -1,5 +1,6 @@
 """The set-up sheet: what an operator needs beside the programs, on two pages of paper."""
 
+from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -104,13 +105,18 @@ def write_setup_page(
             *_probe(station),
             *_run(station, others, playback),
             _alarms(plan, station),
-            *([Section("Omitted touches", items=list(map(str, plan.refused)))]
-              if plan.refused else []),
+            *([Section("Omitted touches", items=_omitted(plan))] if plan.refused else []),
         ],
         foot=["Limits in mm; those of angles in degrees."],
     )  # fmt: skip
     write_page(folder / page, content)
     return folder / page
+
+
+def _omitted(plan: TouchPlan) -> list[str]:
+    """Touches that cannot be made, those of one place and reason in one line."""
+    counts = Counter(map(str, plan.refused))
+    return [f"{plural(count, 'touch')} on {words}" for words, count in counts.items()]
 
 
 def _campaign(stations: Sequence[Station], number: int) -> Section:

@@ -1,5 +1,6 @@
 """Sensitivities on a page: maps, maps in three dimensions, dominant errors of every region."""
 
+from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -14,7 +15,7 @@ from matstd.sensitivity.shares import regions
 from matstd.sensitivity.study import Study, Volume, has_volume, level, volume
 from matstd.twin.errors import DesignError
 from matstd.twin.frames import Array
-from matstd.twin.machine import Family, Symbol
+from matstd.twin.machine import Chain, Family, Symbol
 from matstd.twin.units import DEG, UM, URAD
 
 ERROR_3D, S_3D = "volumetric_3d.png", "sensitivity_3d.png"
@@ -56,7 +57,7 @@ def write_study_page(
     chain, v = study.chain, study.volumetric
     page = Page(
         heading=f"Sensitivities of {chain.name}",
-        lead=f"Chain `{chain.notation}`, {len(chain.symbols)} error parameters.",
+        lead=f"Chain `{chain.notation}`, {parameters_words(chain)}.",
         means=study_meaning(study),
         next="`matstd design` places a standard that distinguishes these errors.",
         key=[
@@ -219,3 +220,17 @@ def _scene(
         T_readings_artefact=stands,
         lines=box.lines(),
     )
+
+
+def parameters_words(chain: Chain) -> str:
+    """`71 error parameters: 49 of the axes, 11 of the spindle C1, 11 of set-up and tool`."""
+    counts = Counter(_carrier(chain, symbol) for symbol in chain.symbols)
+    parts = ", ".join(f"{count} of {name}" for name, count in counts.items())
+    return f"{len(chain.symbols)} error parameters: {parts}"
+
+
+def _carrier(chain: Chain, symbol: Symbol) -> str:
+    if symbol.family is Family.SETUP:
+        return "the set-up of workpiece and tool"
+    link = chain.link(symbol.link)
+    return "the axes" if link.programmed else f"{link.name}, which is not programmed"

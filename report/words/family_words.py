@@ -52,7 +52,8 @@ def family_line(placement: Placement) -> str:
         a, b = (round(2.0 * half) for half in placement.standard.patches[0].half_size)
         built += f" of {a} x {b} mm"
     lead = _lead(placement, own, [*by_family.values()])
-    words = f"{built}. {lead}{_shown(own)}, and {_left(own)}"
+    roles = f" ({len(placement.requests)} that identify, {len(placement.proof)} that prove)"
+    words = f"{built}. {lead}{_shown(own, roles)}, and {_left(own)}"
     others = [_other(one) for one in by_family.values()]
     return f"{words}. Not built: {'; '.join(others)}." if others else f"{words}."
 
@@ -63,13 +64,13 @@ def shown_line(placement: Placement) -> str:
     return f"{_shown(own[0])}." if own else ""
 
 
-def _shown(own: FamilyFigures) -> str:
+def _shown(own: FamilyFigures, roles: str = "") -> str:
     is_bump, width, direction = own.least
     least = "a short error of one axis" if is_bump else "a smooth field"
     return (
-        f"After {_effort(own)} the effect of {um(SIZE)} rms that shows least ({least}, {width:g} "
-        f"mm wide, along {direction}) has {digits(own.signal, 2)} times its standard uncertainty "
-        f"(detected with {100.0 * own.power:.0f} %)"
+        f"After {_effort(own)}{roles} the effect of {um(SIZE)} rms that shows least ({least}, "
+        f"{width:g} mm wide, along {direction}) has {digits(own.signal, 2)} times its standard "
+        f"uncertainty (detected with {100.0 * own.power:.0f} %)"
     )
 
 

@@ -125,7 +125,8 @@ def test_the_next_command_writes_over_nothing(tmp_path, monkeypatch) -> None:
         if taken:
             Path(taken).mkdir()
         assert (
-            next_line(args) == f"next: matstd diagnose run.csv -o {stated}   (what the model lacks)"
+            next_line(args)
+            == f"next: matstd diagnose run.csv --auto -o {stated}   (what the model lacks)"
         )
 
 
