@@ -6,6 +6,7 @@ from matstd.report.compensation.compensation_pictures import (
     share_lines,
 )
 from matstd.report.compensation.compensation_words import (
+    grown_sentence,
     program_lines,
     result_sentence,
     table_lines,
@@ -15,6 +16,7 @@ from matstd.report.compensation.table_page import write_compensation_page
 __all__ = [
     "draw_program",
     "draw_shares_along",
+    "grown_sentence",
     "program_lines",
     "result_sentence",
     "share_lines",

@@ -30,7 +30,7 @@ from matstd.compensation.tables import (
 from matstd.compensation.tables.along_axes import along_axes
 from matstd.compensation.tables.by_name import line
 from matstd.diagnosis.geometry import Estimate
-from matstd.report.compensation import table_lines
+from matstd.report.compensation import grown_sentence, table_lines
 from matstd.twin.errors import BadFile
 from matstd.twin.files import read_machine
 from matstd.twin.library import parse_effect
@@ -446,3 +446,12 @@ def test_a_remaining_location_error_has_the_size_that_its_run_determines(bench_c
     np.testing.assert_allclose(found.before, 28.0 * UM)
     np.testing.assert_allclose(found.rms, 14.0 * UM)
     np.testing.assert_allclose(found.u, 0.6 / 2.1 * UM)
+
+
+def test_an_error_that_grows_is_explained():
+    """Of three errors one grows: 130 of 57 µm; that by a rounding does not count."""
+    sizes = {"EYZ": (57.0, 130.0), "EX0C": (20.0, 20.0), "EXX": (30.0, 30.1)}
+    left = [UncorrectedError(name, a * UM, b * UM, 0.0) for name, (a, b) in sizes.items()]
+    said = grown_sentence(left)
+    assert said.startswith("more of EYZ remains than there was")
+    assert grown_sentence(left[1:]) == ""
