@@ -52,8 +52,7 @@ def family_line(placement: Placement) -> str:
         a, b = (round(2.0 * half) for half in placement.standard.patches[0].half_size)
         built += f" of {a} x {b} mm"
     lead = _lead(placement, own, [*by_family.values()])
-    roles = f" ({len(placement.requests)} that identify, {len(placement.proof)} that prove)"
-    words = f"{built}. {lead}{_shown(own, roles)}, and {_left(own)}"
+    words = f"{built}. {lead}{_shown(placement, own)}, and {_left(own)}"
     others = [_other(one) for one in by_family.values()]
     return f"{words}. Not built: {'; '.join(others)}." if others else f"{words}."
 
@@ -61,14 +60,15 @@ def family_line(placement: Placement) -> str:
 def shown_line(placement: Placement) -> str:
     """What one wavy face shows of effects that no model has; empty for other families."""
     own = [one for one in placement.families if one.family is placement.family is Family.WAVY]
-    return f"{_shown(own[0])}." if own else ""
+    return f"{_shown(placement, own[0])}." if own else ""
 
 
-def _shown(own: FamilyFigures, roles: str = "") -> str:
+def _shown(placement: Placement, own: FamilyFigures) -> str:
+    roles = f"{len(placement.requests)} that identify, {len(placement.proof)} that prove"
     is_bump, width, direction = own.least
     least = "a short error of one axis" if is_bump else "a smooth field"
     return (
-        f"After {_effort(own)}{roles} the effect of {um(SIZE)} rms that shows least ({least}, "
+        f"After {_effort(own)} ({roles}) the effect of {um(SIZE)} rms that shows least ({least}, "
         f"{width:g} mm wide, along {direction}) has {digits(own.signal, 2)} times its standard "
         f"uncertainty (detected with {100.0 * own.power:.0f} %)"
     )

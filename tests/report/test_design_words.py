@@ -111,7 +111,9 @@ def test_the_first_line_says_which_family_wins_and_by_how_much(
         FamilyFigures(family, rms_user=left * UM, signal=signal, least=(True, 40.0, "Y"))
         for family, signal, left in zip((Family.BALLS, Family.WAVY), signals, lefts, strict=True)
     )
+    made.requests, made.proof = range(480), range(110)
     line = family_line(made)
+    assert "(480 that identify, 110 that prove) the effect" in line
     begin = "one wavy face of 180 x 180 mm" if built is Family.WAVY else "2 balls that prove"
     assert line.startswith(f"Built: 13 balls and {begin}. For ")
     assert said in line

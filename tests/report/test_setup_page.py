@@ -37,6 +37,17 @@ def sheet(golden, tmp_path_factory):
     return page.read_text(encoding="utf-8"), programs
 
 
+def test_touches_left_out_for_one_reason_stand_in_one_line(golden, tmp_path):
+    plan = golden.plan()
+    here = Refusal(-1, "SPH1", {"B": -0.5 * np.pi}, "no room above")
+    left_out = replace(plan, refused=(here, here, replace(here, feature="FF2"), here))
+    station = Station(left_out, Dialect(), golden.programs())
+    page = write_setup_page(tmp_path / "setup", [station], 0, None).read_text(encoding="utf-8")
+    assert page.count("SPH1, B-90.0: no room above") == 1
+    assert "3 touches on SPH1, B-90.0: no room above" in page
+    assert "1 touch on FF2, B-90.0: no room above" in page
+
+
 def test_every_alarm_of_the_programs_is_explained(sheet):
     text, programs = sheet
     alarms = set(re.findall(r"LBL (\d+) ;(?:ALARM|NOTRIGGER)", programs.programs[0].text))
