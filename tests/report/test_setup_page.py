@@ -14,6 +14,7 @@ from matstd.probe_paths.campaign.tolerance import STEPS_MM
 from matstd.probe_paths.emit import Feeds
 from matstd.probe_paths.language import Dialect
 from matstd.probe_paths.locate import companions
+from matstd.probe_paths.plan import Refusal
 from matstd.probe_paths.stations import Station
 from matstd.report.pages import write_setup_page
 from matstd.report.pages.setup_page import PAGE, PICTURE
@@ -41,8 +42,9 @@ def test_touches_left_out_for_one_reason_stand_in_one_line(golden, tmp_path):
     plan = golden.plan()
     here = Refusal(-1, "SPH1", {"B": -0.5 * np.pi}, "no room above")
     left_out = replace(plan, refused=(here, here, replace(here, feature="FF2"), here))
+    others = companions(plan, Dialect(), Feeds(), 80.0)
     station = Station(left_out, Dialect(), golden.programs())
-    page = write_setup_page(tmp_path / "setup", [station], 0, None).read_text(encoding="utf-8")
+    page = write_setup_page(tmp_path / "setup", [station], 0, others).read_text(encoding="utf-8")
     assert page.count("SPH1, B-90.0: no room above") == 1
     assert "3 touches on SPH1, B-90.0: no room above" in page
     assert "1 touch on FF2, B-90.0: no room above" in page
