@@ -90,10 +90,22 @@ def test_names_are_used_once(standard):
 
 def test_volume_estimate_against_closed_form(standard):
     # base with rounded corners, one upright column with a flat lid, four holes, no core
-    column = graph_patch("FF1", leaning(0, 0, 100, 0), (20.0, 25.0), FLAT, depth=90.0)
-    whole = replace(standard, core=None, patches=(column,))
+    column = graph_patch("FF1", leaning(0, 0, 60, 0), (20.0, 25.0), FLAT, depth=45.0)
+    places = ((50.0, 50.0), (-50.0, 50.0), (50.0, -50.0), (-50.0, -50.0))
+    whole = replace(
+        standard,
+        base=Base((70.0, 70.0), 25.0, 30.0),
+        core=None,
+        patches=(column,),
+        spheres=tuple(
+            replace(s, centre=np.array([x, y, 60.0]))
+            for s, (x, y) in zip(standard.spheres, ((0, 50), (50, 0), (-50, 0)), strict=True)
+        ),
+        holes=tuple(replace(h, x=x, y=y) for h, (x, y) in zip(standard.holes, places, strict=True)),
+        blank_height=80.0,
+    )
     fit = Fittings()
-    plate = (280.0**2 - (4 - np.pi) * 25.0**2) * 30.0
+    plate = (140.0**2 - (4 - np.pi) * 25.0**2) * 30.0
     holes = 4 * np.pi * (fit.hole_radius**2 * 19.0 + fit.bore_radius**2 * 11.0)
     stems = sum(
         np.pi / 3 * (s.centre[2] - 30.0) * (81.0 + 54.0 + 36.0)
@@ -101,7 +113,7 @@ def test_volume_estimate_against_closed_form(standard):
         - _stem_in_ball(s)
         for s in whole.spheres
     )
-    exact = plate + 40.0 * 50.0 * 70.0 - holes + stems
+    exact = plate + 40.0 * 50.0 * 30.0 - holes + stems
     assert whole.volume(2.0) == pytest.approx(exact, rel=2e-3)
     assert whole.volume() == pytest.approx(exact, rel=1e-2)
     assert whole.mass() == pytest.approx(whole.volume() * 7.8e-6, rel=1e-12)
