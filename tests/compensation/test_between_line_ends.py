@@ -64,12 +64,9 @@ def distance(points, path):
     """Largest distance of points from the nearest piece of a path."""
     start, along = path[:-1], np.diff(path, axis=0)
     size = np.maximum(np.einsum("ni,ni->n", along, along), 1e-30)
-    worst = 0.0
-    for point in points:
-        share = np.clip(np.einsum("ni,ni->n", point - start, along) / size, 0.0, 1.0)
-        foot = start + share[:, None] * along
-        worst = max(worst, np.linalg.norm(point - foot, axis=1).min())
-    return worst
+    off = points[:, None] - start
+    share = np.clip(np.einsum("pni,ni->pn", off, along) / size, 0.0, 1.0)
+    return np.linalg.norm(off - share[..., None] * along, axis=-1).min(axis=1).max()
 
 
 def straight(a, b, n=3000):

@@ -10,7 +10,7 @@ from matstd.twin.record import Run
 from matstd.twin.units import UM, URAD
 
 NOISE = 10.0 * UM
-POSES = 60
+POSES = 40
 
 
 def run_of(sags: dict[str, list[float]], seed: int = 5) -> Run:

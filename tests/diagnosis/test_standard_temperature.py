@@ -6,6 +6,7 @@ The standard grows by the simulator's own formula, true scales are its own produ
 
 import re
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -42,6 +43,7 @@ def experiment():
 def found(experiment):
     """A function: temperature, head -> run, fit, and by name the scales with u and the truth."""
 
+    @cache
     def made(temperature, head=""):
         run = probed_warm(experiment, np.random.default_rng(4), ALPHA, temperature, head)
         fit = fit_run(run, ordinary_model(run.touches.chain))

@@ -48,15 +48,15 @@ def on_sweep(s, x, rounds=60):
 
 
 def test_gaps_are_those_of_alternating_projections_and_never_larger():
-    sweeps, hulls, half = random_pairs(np.random.default_rng(3), 800)
+    sweeps, hulls, half = random_pairs(np.random.default_rng(3), 400)
     found = gaps(sweeps, hulls, np.inf)
     x = sweeps.middle
     for _ in range(300):
         y = np.clip(x, -half, half)
         x = on_sweep(sweeps, y)
     distance = np.linalg.norm(x - np.clip(x, -half, half), axis=1)
-    assert (found > 0.0).sum() > 500
-    assert (found == 0.0).sum() > 50
+    assert (found > 0.0).sum() > 250
+    assert (found == 0.0).sum() > 25
     assert np.max(found - distance) < SHORT
     # projections creep where faces are nearly parallel: a few have not arrived
     assert np.mean(distance - found < 2.0 * EXACT) > 0.98

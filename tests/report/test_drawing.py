@@ -80,10 +80,9 @@ def test_the_title_block_and_the_notes_leave_no_question(upright):
     assert min(sizes) >= 2.5 - 1e-9
 
 
-def test_a_frame_points_at_what_it_holds_for(upright):
+def test_a_frame_points_at_what_it_holds_for(upright, drawn):
     """The leader of the balls ends on the top of the highest circle of the view."""
-    sheet = draw_sheet(upright, details_of(upright), ISSUER)
-    lines = [p.get_path().vertices for p in sheet.axes.patches]
+    lines = [p.get_path().vertices for p in drawn.axes.patches]
     sizes = 2.0 * max(s.radius for s in upright.spheres) * np.array([0.5, 1.0, 2.0])
     circles = [v for v in lines if len(v) in (97, 98) and np.ptp(v[:, 1]) > 0.9 * sizes[0]]
     tops = [v[np.argmax(v[:, 1])] for v in circles]
