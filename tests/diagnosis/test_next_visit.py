@@ -3,6 +3,7 @@
 import csv
 import json
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -17,7 +18,7 @@ from matstd.diagnosis.laws.beginning import Beginning
 from matstd.diagnosis.next_visit import NoPlan, Schedule, greedy, plan_visit, separation
 from matstd.diagnosis.next_visit.course import TIME_CONSTANTS, Course
 from matstd.diagnosis.next_visit.discrimination import log_odds_drawn
-from matstd.diagnosis.next_visit.hypotheses import Hypothesis
+from matstd.diagnosis.next_visit.hypotheses import Hypothesis, hypotheses
 from matstd.diagnosis.next_visit.planned_visit import LEAST_SEPARATION
 from matstd.diagnosis.next_visit.planned_visit import _planned as planned
 from matstd.report.laws import visit_sentences
@@ -108,6 +109,20 @@ def test_a_visit_distinguishes_a_temperature_from_time(warm) -> None:
     said = visit_sentences(plan)
     assert f"{len(t)} touches" in said[0]
     assert "σ" in said[1]
+
+
+def test_the_time_constant_of_a_rival_stays_uncertain(warm) -> None:
+    """As uncertain as its run leaves it, in what the rival predicts of the next visit."""
+    start = Beginning.of_run(warm[1])
+    names = "law(bias,lin T-spindle)", "law(bias,settling time)"
+    law, other = (parse_effect(name, warm[1].touches.chain) for name in names)
+    rivals = [SimpleNamespace(law=other, log_odds=1.0)]
+    one = SimpleNamespace(law=law, alike=(), library=None, rivals=rivals)
+    fit = start.fitted([law], True)
+    learning = SimpleNamespace(laws=[one], tangent=fit, beginning=start, after=fit)
+    own, rival = hypotheses(learning)
+    assert (own.fit, rival.law, rival.log_odds) == (fit, other, 1.0)
+    assert [e.name for e in rival.fit.tangents] == ["law(bias,settling time) w"]
 
 
 def test_carriers_that_do_the_same_are_a_class_and_no_rivals(warm) -> None:
