@@ -6,6 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from machines import LATHE
 
 from matstd.cad_out.kernel.process import Ending
 from matstd.report.maps.study_maps import _volumetric_sections
@@ -24,7 +25,7 @@ from matstd.sensitivity.population import Population
 from matstd.sensitivity.study import run_study
 from matstd.twin.files import read_machine
 from matstd.twin.frames import apply
-from matstd.twin.machine import Axis, make_chain, tip
+from matstd.twin.machine import tip
 from matstd.twin.units import DEG, UM
 
 NM = 1e-6  # mm
@@ -119,10 +120,7 @@ def test_without_opengl_the_page_is_written_with_a_remark(study, tmp_path, monke
 
 @pytest.mark.usefixtures("unrendered")
 def test_a_machine_without_a_volume_is_reported_so(tmp_path):
-    lathe = make_chain(
-        "lathe", "[w f X Z t]", {"X": Axis(range=(-100.0, 100.0)), "Z": Axis(range=(-300.0, 0.0))}
-    )
-    small = SimpleNamespace(workspace=Workspace(lathe, {}, 50.0))
+    small = SimpleNamespace(workspace=Workspace(LATHE, {}, 50.0))
     remarks: list[str] = []
     assert draw_study_volumes(small, tmp_path, remarks) == []
     assert remarks == ["No maps in three dimensions: they need three linear axes that can move."]

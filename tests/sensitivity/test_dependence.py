@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from machines import none_but
 
 from matstd.sensitivity.first_order import covariance, latin_hypercube, rms, variance_parts
 from matstd.sensitivity.montecarlo.batches import first_order
@@ -20,7 +21,6 @@ from matstd.sensitivity.population import (
 from matstd.sensitivity.population.dependence import amplitude
 from matstd.twin.effects import ComponentError
 from matstd.twin.errors import DesignError
-from matstd.twin.machine import DEFAULT_RANGES, Ranges
 
 LENGTH = 160.0
 NAMES = ("EXX", "EYX", "EC0Y")
@@ -29,7 +29,7 @@ RANGES = {"EXX": (0.05, 0.1), "EYX": (0.0, 0.08), "EC0Y": (1e-4, 3e-4)}
 
 
 def only(chain, ranges=RANGES, **other):
-    return Population(chain, Ranges({name: (0.0, 0.0) for name in DEFAULT_RANGES}, ranges), **other)
+    return Population(chain, none_but(**ranges), **other)
 
 
 def column(chain, name):

@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
+from machines import none_but
 
 from matstd.sensitivity.first_order import covariance, latin_hypercube, rms, variance_shares
 from matstd.sensitivity.montecarlo import exact_check, volumetric
 from matstd.sensitivity.population import Distributions, Population, coefficients, drawn_in_chunks
 from matstd.twin.errors import DesignError
-from matstd.twin.machine import DEFAULT_RANGES, Ranges
 from matstd.twin.record import at_poses
 from matstd.twin.units import UM
 
@@ -33,11 +33,6 @@ def brute_force(population, q, draws, seed):
     )
     G = population.model.tip_columns(at_poses(population.chain, q, LENGTH))
     return np.linalg.norm(np.einsum("nik,sk->nsi", G, theta), axis=2)
-
-
-def only(chain, **ranges):
-    """A machine with a few errors."""
-    return Ranges({name: (0.0, 0.0) for name in DEFAULT_RANGES}, ranges)
 
 
 def test_statistics_are_those_of_plain_numpy(chain, poses):
@@ -84,7 +79,7 @@ def test_mean_square_is_the_closed_one(chain, poses):
 def test_one_linear_error_has_a_known_distribution(chain, workspace):
     # EXX = a u with a even in [50, 100] um: |d| = a |u|, its median 75 um |u|, its P95 97.5 um |u|
     population = Population(
-        chain, only(chain, EXX=(50 * UM, 100 * UM)), Distributions(shapes=("linear",))
+        chain, none_but(EXX=(50 * UM, 100 * UM)), Distributions(shapes=("linear",))
     )
     q = latin_hypercube(workspace, 20, np.random.default_rng(3))
     found = volumetric(population, q, LENGTH, 20000, np.random.default_rng(4))
@@ -132,7 +127,7 @@ def test_first_order_is_close_to_exact_and_not_equal(chain, poses):
 
 
 def test_shares_sum_to_one_and_agree_with_pick_and_freeze(chain, poses):
-    ranges = only(chain, EXX=(0.05, 0.1), EBX=(5e-5, 1e-4), EC0Y=(1e-4, 3e-4), EAC=(1e-5, 4e-4))
+    ranges = none_but(EXX=(0.05, 0.1), EBX=(5e-5, 1e-4), EC0Y=(1e-4, 3e-4), EAC=(1e-5, 4e-4))
     population = Population(chain, ranges)
     share = variance_shares(population, poses, LENGTH)
     np.testing.assert_allclose(share.sum(axis=1), 1.0, rtol=1e-12)
@@ -160,12 +155,6 @@ def test_nothing_to_draw_or_to_look_at_is_refused(chain, poses):
         volumetric(Population(chain), poses, LENGTH, 1, np.random.default_rng(1))
     with pytest.raises(DesignError, match="a pose"):
         volumetric(Population(chain), poses[:0], LENGTH, 10, np.random.default_rng(1))
-
-
-def test_a_machine_without_errors_has_none(chain, poses):
-    found = volumetric(Population(chain, only(chain)), poses, LENGTH, 100, np.random.default_rng(1))
-    assert found.mean.max() == 0.0
-    assert found.p95.max() < UM
 
 
 def test_progress_is_reported(chain, poses):

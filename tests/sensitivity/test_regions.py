@@ -2,14 +2,14 @@
 
 import numpy as np
 import pytest
-from machines import LENGTH
+from machines import LATHE, LENGTH, none_but
 
 from matstd.report.maps import draw_regions
 from matstd.report.words import dominant_words, place_words
 from matstd.sensitivity.first_order import Workspace
 from matstd.sensitivity.population import Population
 from matstd.sensitivity.shares import region_totals, regions
-from matstd.twin.machine import DEFAULT_RANGES, Axis, Ranges, make_chain, tip
+from matstd.twin.machine import tip
 from matstd.twin.units import DEG, UM
 
 
@@ -65,13 +65,9 @@ def test_shares_sum_to_one_and_follow_the_displaced_c_line(found, chain):
 
 def test_shares_of_two_constants_by_hand():
     # Displaced zeros of 3 and 4 um, nothing else: 9 and 16 of 25 everywhere, 5 um rms.
-    none = {name: (0.0, 0.0) for name in DEFAULT_RANGES}
-    ranges = Ranges(none, {"EX0X": (3 * UM, 3 * UM), "EZ0Z": (4 * UM, 4 * UM)})
-    lathe = make_chain(
-        "lathe", "[w f X Z t]", {"X": Axis(range=(-100.0, 100.0)), "Z": Axis(range=(-300.0, 0.0))}
-    )
-    names = [s.name for s in lathe.symbols]
-    all_of_them = regions(Population(lathe, ranges), Workspace(lathe, {}, 50.0))
+    ranges = none_but(EX0X=(3 * UM, 3 * UM), EZ0Z=(4 * UM, 4 * UM))
+    names = [s.name for s in LATHE.symbols]
+    all_of_them = regions(Population(LATHE, ranges), Workspace(LATHE, {}, 50.0))
     assert len(all_of_them) == 3  # no rotary axis
     for region in all_of_them:
         assert region.rms == pytest.approx(5 * UM)
@@ -83,16 +79,12 @@ def test_shares_of_two_constants_by_hand():
 
 def test_the_only_error_makes_all_of_the_length():
     # Jansen's index of the one error there is: mean (f(a) - f(b))^2 / (2 Var f) = 1 on average.
-    none = {name: (0.0, 0.0) for name in DEFAULT_RANGES}
-    ranges = Ranges(none, {"EX0X": (1 * UM, 9 * UM)})
-    lathe = make_chain(
-        "lathe", "[w f X Z t]", {"X": Axis(range=(-100.0, 100.0)), "Z": Axis(range=(-300.0, 0.0))}
-    )
-    area, population = Workspace(lathe, {}, 50.0), Population(lathe, ranges)
+    area = Workspace(LATHE, {}, 50.0)
+    population = Population(LATHE, none_but(EX0X=(1 * UM, 9 * UM)))
     found = regions(population, area)
     totals = region_totals(population, area, found, np.random.default_rng(3), machines=4000)
-    i = [s.name for s in lathe.symbols].index("EX0X")
-    assert totals.total.shape == totals.u.shape == (3, len(lathe.symbols))
+    i = [s.name for s in LATHE.symbols].index("EX0X")
+    assert totals.total.shape == totals.u.shape == (3, len(LATHE.symbols))
     np.testing.assert_allclose(totals.total[:, i], 1.0, atol=4.0 * totals.u[0, i])
     assert 0.0 < totals.u[0, i] < 0.03
     assert np.all(np.delete(totals.total, i, axis=1) == 0.0)
@@ -112,8 +104,7 @@ def test_diamonds_stand_at_the_total_effects(found, chain, workspace):
 
 
 def test_a_machine_without_errors_is_named(chain, workspace):
-    ranges = Ranges({name: (0.0, 0.0) for name in DEFAULT_RANGES})
-    nothing = regions(Population(chain, ranges), workspace)
+    nothing = regions(Population(chain, none_but()), workspace)
     assert "no error displaces the tool point" in dominant_words(nothing[0], [])
     assert "No error" in draw_regions(chain, nothing).texts[0].get_text()
 

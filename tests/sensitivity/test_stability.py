@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from machines import none_but
 
 from matstd.report.words import sampling_words
 from matstd.report.words.sensitivity_words import stability_words
@@ -9,7 +10,6 @@ from matstd.sensitivity.montecarlo import Stability, volumetric
 from matstd.sensitivity.montecarlo.stability import Stabiliser, numerical_tolerance
 from matstd.sensitivity.population import Distributions, Population
 from matstd.twin.errors import DesignError
-from matstd.twin.machine import DEFAULT_RANGES, Ranges
 from matstd.twin.units import UM
 
 LENGTH = 160.0
@@ -39,9 +39,9 @@ def test_what_does_not_vary_has_nothing_to_settle():
 
 def additive(chain, last):
     """Y = X1 + X2 + X3 + X4 as the tool point along x: four even errors at one pose."""
-    ranges = {name: (0.0, EVEN) for name in ("EXX", "EXY", "EXZ")} | {"EX0t": (0.0, last * EVEN)}
-    nothing = {name: (0.0, 0.0) for name in DEFAULT_RANGES}
-    return Population(chain, Ranges(nothing, ranges), Distributions(("constant",), ("constant",)))
+    one = (0.0, EVEN)
+    ranges = none_but(EXX=one, EXY=one, EXZ=one, EX0t=(0.0, last * EVEN))
+    return Population(chain, ranges, Distributions(("constant",), ("constant",)))
 
 
 @pytest.mark.parametrize(

@@ -5,14 +5,15 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from machines import LATHE, none_but
 
-from matstd.report.maps import draw_maps
+from matstd.report.maps import draw_maps, study_maps
+from matstd.report.style import nothing as nothing_to_draw
 from matstd.report.words import sampling_words
 from matstd.sensitivity.first_order import Workspace
 from matstd.sensitivity.population import Population
 from matstd.sensitivity.study import Study, run_study, write_study
 from matstd.sensitivity.study.machine_study import section_pairs
-from matstd.twin.machine import Axis, make_chain
 from matstd.twin.units import DEG, UM
 
 
@@ -96,14 +97,30 @@ def test_ranking_is_by_share(study):
 
 def test_a_machine_with_two_readings_is_studied_too(tmp_path, rendered_alone):
     rendered_alone("volumetric")
-    lathe = make_chain(
-        "lathe", "[w f X Z t]", {"X": Axis(range=(-100.0, 100.0)), "Z": Axis(range=(-300.0, 0.0))}
-    )
-    area = Workspace(lathe, {}, 50.0)
+    area = Workspace(LATHE, {}, 50.0)
     assert section_pairs(area) == [("X", "Z")]
-    study = run_study(Population(lathe), area, 40, 50, np.random.default_rng(1))
+    study = run_study(Population(LATHE), area, 40, 50, np.random.default_rng(1))
     maps = draw_maps(study, tmp_path)
     assert all((tmp_path / name).exists() for name, _ in maps)
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_machine_without_errors_gives_a_whole_study(
+    chain, workspace, tmp_path, monkeypatch, rendered_alone
+):
+    """The two pictures of S, which know nothing of the sizes of errors, are left out."""
+    rendered_alone("volumetric_sections", "variance_shares")
+    for name in ("overview", "maps_of_S"):
+        monkeypatch.setattr(study_maps, name, lambda _: nothing_to_draw("S"))
+    nothing = Population(chain, none_but())
+    study = run_study(nothing, workspace, 20, 50, np.random.default_rng(1))
+    assert study.volumetric.mean.max() == study.shares.max() == study.rms.max() == 0.0
+    assert study.volumetric.p95.max() < UM
+    assert study.tail == (0.0, 0.0)
+    write_study(study, tmp_path, "sampled")
+    written = draw_maps(study, tmp_path)
+    assert written
+    assert all((tmp_path / name).stat().st_size > 0 for name, _ in written)
 
 
 @pytest.mark.parametrize(

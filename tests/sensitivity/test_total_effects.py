@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from machines import none_but
 
 from matstd.sensitivity.first_order import latin_hypercube
 from matstd.sensitivity.montecarlo.batches import first_order
@@ -15,7 +16,6 @@ from matstd.sensitivity.population import (
 )
 from matstd.sensitivity.shares import norm_shares, total_effects
 from matstd.twin.errors import DesignError, ShapeMismatch
-from matstd.twin.machine import DEFAULT_RANGES, Ranges
 
 SINGLE = 1e-5
 """Indices are off by so little where the compiled code calculates in single precision."""
@@ -105,10 +105,7 @@ def test_stated_errors_are_those_of_repeated_runs():
 
 def test_errors_of_random_machines_change_as_a_whole(chain, workspace):
     names = ("EXX", "EYC", "EC0Y", "EAB")
-    ranges = Ranges(
-        {name: (0.0, 0.0) for name in DEFAULT_RANGES},
-        {"EXX": (0.05, 0.1), "EYC": (0.02, 0.06), "EC0Y": (1e-4, 3e-4), "EAB": (5e-5, 3e-4)},
-    )
+    ranges = none_but(EXX=(0.05, 0.1), EYC=(0.02, 0.06), EC0Y=(1e-4, 3e-4), EAB=(5e-5, 3e-4))
     population = Population(chain, ranges, Distributions(periods=(1, 3)))
     q = latin_hypercube(workspace, 5, np.random.default_rng(4))
     found = norm_shares(population, q, 160.0, np.random.default_rng(5), machines=8192)

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from machines import LENGTH
+from machines import LATHE, LENGTH
 
 from matstd.report.maps.study_maps import draw_rotary
 from matstd.sensitivity.first_order import Workspace
@@ -75,10 +75,7 @@ def test_points_outside_the_volume_of_the_workspace_have_no_value(chain, workspa
 
 
 def test_a_machine_without_three_linear_axes_has_no_volume():
-    lathe = make_chain(
-        "lathe", "[w f X Z t]", {"X": Axis(range=(-100.0, 100.0)), "Z": Axis(range=(-300.0, 0.0))}
-    )
-    area = Workspace(lathe, {}, 50.0)
+    area = Workspace(LATHE, {}, 50.0)
     assert not has_volume(area)
     assert points_over_rotary(area) == ()
     with pytest.raises(NotReachable, match="room along X, Z, expected three linear axes"):
