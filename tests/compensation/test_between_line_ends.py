@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from bench import oracle_tip, part_program, readings
 
-from matstd.cli import main
 from matstd.compensation.field import State
 from matstd.compensation.part_programs import Frame
 from matstd.compensation.programs import compensated
@@ -139,13 +138,12 @@ def _begin(done, row, rows):
     return (seconds[1] - seconds[0]) / (seconds[2] - seconds[0])
 
 
-def test_the_command_states_both_and_the_limit(bench, errors_file, tmp_path, capsys):
+def test_the_command_states_both_and_the_limit(bench, errors_file, tmp_path, answer):
     source, output = tmp_path / "part.ngc", tmp_path / "better.ngc"
     source.write_text(GCODE)
     command = ["compensate", str(bench), "--errors", str(errors_file), "--program", str(source)]
     command += ["--tool-length", "160", "--datum", "Z=-200", "--tolerance", "2", "-o", str(output)]
-    assert main(command) == 0
-    said = capsys.readouterr().out
+    said = answer(command)
     data = json.loads(output.with_suffix(".json").read_text())
     inside, ends = data["between_line_ends"]["worst_um"], data["at_line_ends"]["after"]["worst_um"]
     assert ends < 0.6 < 1.0 < inside < 2.2
@@ -157,7 +155,7 @@ def test_the_command_states_both_and_the_limit(bench, errors_file, tmp_path, cap
     assert np.isnan(table["between_um"][[0, -1]]).all()  # rapid
 
 
-def test_a_reversal_is_seen_between_line_ends(bench, tmp_path, capsys):
+def test_a_reversal_is_seen_between_line_ends(bench, tmp_path, answer):
     """8 um of backlash, taken up along the first line behind the reversal: by hand.
 
     X errs by 8 (1 - s) um along it, the way goes at 45 degrees to X, and s = 1/4 is the place
@@ -168,8 +166,7 @@ def test_a_reversal_is_seen_between_line_ends(bench, tmp_path, capsys):
     source.write_text("G0 X0 Y0 Z0\nG1 X10 Y10 F900\nG1 X0 Y20\n")
     command = ["compensate", str(bench), "--errors", str(errors), "--program", str(source)]
     command += ["--tool-length", "160", "--datum", "Z=-200", "--add", "backlash(X)=8um"]
-    assert main([*command, "-o", str(tmp_path / "better.ngc")]) == 0
-    said = capsys.readouterr().out
+    said = answer([*command, "-o", str(tmp_path / "better.ngc")])
     assert "(line 3)" in said
     assert "except where a reversal or a load changes the correction abruptly" in said
     inside = json.loads((tmp_path / "better.json").read_text())["between_line_ends"]["worst_um"]

@@ -28,7 +28,7 @@ def test_one_by_hand(known, datum, bench_chain):
     np.testing.assert_allclose(field, [[0, 0, 0], [0, 20 * UM, 0]], atol=1e-9)
 
 
-def test_command(bench, errors_file, tmp_path, capsys):
+def test_command(bench, errors_file, tmp_path, answer, refusal):
     source, out = tmp_path / "part.ngc", tmp_path / "out"
     source.write_text("G0 X0 Y0 Z0\nG1 X200 F1000\nG1 B-30\nM30\n")
     command = [
@@ -42,8 +42,7 @@ def test_command(bench, errors_file, tmp_path, capsys):
         "0",
     ]
     command += ["--program", str(source), "-o", str(out), "--switch", "EBX=0"]
-    assert main(command) == 0
-    said = capsys.readouterr().out
+    said = answer(command)
     assert said.startswith("all together ")
     table = np.genfromtxt(out / "contributions.csv", delimiter=",", names=True)
     assert table["X_mm"][-1] == 200.0
@@ -55,5 +54,6 @@ def test_command(bench, errors_file, tmp_path, capsys):
     assert main([*command, "-o", str(tmp_path / "at")]) == 0
     at = np.genfromtxt(tmp_path / "at" / "contributions.csv", delimiter=",", names=True)
     np.testing.assert_allclose(at["EYY_dy_um"], 20.0, atol=1e-3)
-    assert main([*command, "-o", str(tmp_path / "no"), "--program", str(source)]) == 2
-    assert "expected one of --program FILE and --poses" in capsys.readouterr().err
+    assert "expected one of --program FILE and --poses" in refusal(
+        [*command, "-o", str(tmp_path / "no"), "--program", str(source)]
+    )

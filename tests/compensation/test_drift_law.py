@@ -261,15 +261,14 @@ def test_an_unstable_law_is_refused(thermal_json, bench_chain, tmp_path):
         parse_effect(f"drift-law({changed},z:EZZ)", bench_chain)
 
 
-def test_command(bench, errors_file, thermal_json, tmp_path, capsys, unrendered):
+def test_command(bench, errors_file, thermal_json, tmp_path, refusal, unrendered):
     """Over a program of an hour the spindle warms the machine; without a sensor: a line."""
     source = tmp_path / "part.ngc"
     source.write_text("G0 X0 Y0 Z0\nG1 X100 F2.5\nG1 X0\n")
     command = ["contributions", str(bench), "--errors", str(errors_file), "--program", str(source)]
     command += ["--tool-length", str(LENGTH), "--add", f"drift-law({thermal_json},z:EZZ)"]
     command += ["--rpm", "3000", "-o", str(tmp_path / "out")]
-    assert main(command) == 2
-    said = capsys.readouterr().err
+    said = refusal(command)
     assert "thermal.json: its law follows frame; there is spindle_rpm" in said
     assert "expected --temperature, --rpm or --value" in said
     assert main([*command, "--temperature", "frame=20"]) == 0

@@ -74,7 +74,7 @@ def test_loads_that_make_no_sense_are_refused(tmp_path, rows, words):
         read_loads(path)
 
 
-def test_a_beam_is_added_on_the_command_line_and_a_short_one_is_reported(tmp_path, capsys):
+def test_a_beam_is_added_on_the_command_line_and_a_short_one_is_reported(tmp_path, answer):
     (tmp_path / "m.toml").write_text(MACHINE)
     (tmp_path / "e.toml").write_text(
         'format = "errors/1"\n[EXX]\nshape = "linear"\namplitude = 5\n'
@@ -84,8 +84,7 @@ def test_a_beam_is_added_on_the_command_line_and_a_short_one_is_reported(tmp_pat
     asked += ["--tool-length", "100", "--poses", str(tmp_path / "p.csv")]
     out = tmp_path / "out"
     added = [f"--add={RAM}=weight=1", "--add=beam(X,supported,300x300,at:350,span:700)=weight=1"]
-    assert main([*asked, *added, "-o", str(out)]) == 0
-    said = capsys.readouterr().out
+    said = answer([*asked, *added, "-o", str(out)])
     assert "beam(Z" in said
     assert "2.3 times as long as deep" in said
     assert main([*asked, "--add=beam(Q)", "-o", str(tmp_path / "no")]) == 2

@@ -7,7 +7,6 @@ import pytest
 from bench import LENGTH, oracle_tip, part_program, readings
 from rs274 import is_there, moves
 
-from matstd.cli import main
 from matstd.compensation.field import MachineErrors, State
 from matstd.compensation.part_programs import Keep
 from matstd.compensation.programs import compensated
@@ -307,13 +306,12 @@ def test_what_leaves_its_travel_is_refused(known, bench_chain, frame, head, tmp_
         compensated(part, far, head)
 
 
-def test_command(bench, errors_file, tmp_path, capsys):
+def test_command(bench, errors_file, tmp_path, answer, refusal):
     source, output = tmp_path / "part.ngc", tmp_path / "out" / "better.ngc"
     source.write_text("G0 X0 Y0 Z0\nG1 X50 F1000\nG2 X50 Y0 I20 J0\nM30\n")
     command = ["compensate", str(bench), "--errors", str(errors_file), "--program", str(source)]
     command += ["--tool-length", str(LENGTH), "--datum", "Z=-200", "-o", str(output)]
-    assert main(command) == 0
-    said = capsys.readouterr().out
+    said = answer(command)
     assert "better.ngc: 3 motions as" in said
     names = {p.name for p in output.parent.iterdir()}
     assert names == {"better.ngc", "better.csv", "better.png", "better.json"}
@@ -322,8 +320,6 @@ def test_command(bench, errors_file, tmp_path, capsys):
     before = np.hypot(table["before_dx_um"], table["before_dy_um"])
     assert before.max() > 5.0
     assert max(np.abs(table[f"after_d{c}_um"]).max() for c in "xyz") < 0.02
-    assert main(command) == 2
-    assert "already exists" in capsys.readouterr().err
+    assert "already exists" in refusal(command)
     again = [w if w != str(source) else str(output) for w in command[:-1]]
-    assert main([*again, str(tmp_path / "twice.ngc")]) == 2
-    assert "that was not compensated before" in capsys.readouterr().err
+    assert "that was not compensated before" in refusal([*again, str(tmp_path / "twice.ngc")])

@@ -356,25 +356,20 @@ def test_a_table_of_another_machine_or_datum_is_refused(known, head, written, be
         head.check(elsewhere, "iso230.csv")
 
 
-def test_commands(bench, errors_file, tmp_path, capsys):
+def test_commands(bench, errors_file, tmp_path, answer, refusal):
     out = tmp_path / "out"
     command = ["compensate", str(bench), "--errors", str(errors_file), "--tables", str(out)]
     command += ["--tool-length", "160", "--control", "iso230"]
-    assert main(command) == 0
-    assert "represents every error" in capsys.readouterr().out
+    assert "represents every error" in answer(command)
     assert {p.name for p in out.iterdir()} >= {"iso230", "report.html", "compensation.json"}
-    assert main(command) == 2
-    assert "already exists" in capsys.readouterr().err
+    assert "already exists" in refusal(command)
     active = ["--force", "--active", str(out / "iso230" / "iso230.csv")]
-    assert main([*command, *active]) == 2
-    assert "would correct twice" in capsys.readouterr().err
-    assert main([*command, *active, "--switch", "EXX=0", "--datum", "X=5"]) == 2
-    assert "matstd datum" in capsys.readouterr().err
+    assert "would correct twice" in refusal([*command, *active])
+    assert "matstd datum" in refusal([*command, *active, "--switch", "EXX=0", "--datum", "X=5"])
     errors_file2 = tmp_path / "other.toml"
     errors_file2.write_text('format = "errors/1"\nEXX = { shape = "linear", amplitude = 1.0 }\n')
     other = [w if w != str(errors_file) else str(errors_file2) for w in command]
-    assert main([*other, *active]) == 2
-    assert "or a model learnt beside it" in capsys.readouterr().err
+    assert "or a model learnt beside it" in refusal([*other, *active])
 
 
 @pytest.mark.parametrize(
@@ -391,10 +386,9 @@ def test_commands(bench, errors_file, tmp_path, capsys):
         (["--temperature", "bed=warm"], "--temperature bed=warm"),
     ],
 )
-def test_bad_words_are_refused(bench, errors_file, tmp_path, capsys, words, said):
+def test_bad_words_are_refused(bench, errors_file, tmp_path, refusal, words, said):
     command = ["compensate", str(bench), "--errors", str(errors_file), "--tool-length", "160"]
-    assert main([*command, "--tables", str(tmp_path / "no"), *words]) == 2
-    assert said in capsys.readouterr().err
+    assert said in refusal([*command, "--tables", str(tmp_path / "no"), *words])
     assert not (tmp_path / "no").exists()
 
 
@@ -420,14 +414,13 @@ amplitude_um_per_K = 4.0
 """
 
 
-def test_what_a_model_follows_has_to_be_stated(tmp_path, capsys):
+def test_what_a_model_follows_has_to_be_stated(tmp_path, refusal):
     """4 µm/K of growth along Z, 5 K above 20 degC: the zero of Z moves by 20 µm."""
     path, out = tmp_path / "model.toml", tmp_path / "out"
     path.write_text(MODEL)
     command = ["compensate", str(path), "--tool-length", "160", "--control", "linuxcnc"]
     command += ["--tables", str(out)]
-    assert main(command) == 2
-    assert "expected --temperature, --rpm or --value" in capsys.readouterr().err
+    assert "expected --temperature, --rpm or --value" in refusal(command)
     assert main([*command, "--temperature", "frame=25"]) == 0
     z = columns(out / "linuxcnc" / "Z.comp", "# matstd sign")
     np.testing.assert_allclose(z[:, 1:], -0.020, atol=1e-6)

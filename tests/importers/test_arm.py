@@ -145,11 +145,10 @@ def test_sign_of_an_arm_that_is_too_long(tmp_path):
     assert slope == pytest.approx(-20e-6, rel=0.02)
 
 
-def test_the_command_makes_run_and_machine(tmp_path, capsys):
+def test_the_command_makes_run_and_machine(tmp_path, answer):
     q = poses()
     table, out = written(tmp_path, seen(q), q), tmp_path / "run.csv"
-    assert main(words(tmp_path)) == 0
-    said = " ".join(capsys.readouterr().out.split())
+    said = " ".join(answer(words(tmp_path)).split())
     assert "J1 [deg] is C, J2 [deg] is B" in said
     assert "believed - measured" in said
     run = read_run(out)

@@ -70,17 +70,17 @@ def test_what_was_measured_is_what_the_axis_is_found_to_do(
     assert "reversal of the " in turning.title.text
 
 
-def test_a_command_makes_the_run_and_shows_the_curve(tmp_path, capsys) -> None:
+def test_a_command_makes_the_run_and_shows_the_curve(tmp_path, answer, refusal) -> None:
     table(tmp_path, "Pitch [µrad]", 20.0 * np.cos(np.pi * POSITIONS / 600.0))
     out = tmp_path / "run.csv"
     words = ["import", str(tmp_path / "table.csv"), "--component", "EBX", "-o", str(out)]
-    assert main([*words, "--u-urad", "0.5"]) == 0
-    assert "angular error EBX: 40 µrad peak to valley" in capsys.readouterr().out
+    assert "angular error EBX: 40 µrad peak to valley" in answer([*words, "--u-urad", "0.5"])
     assert read_run(out).touches.deviation_unit == "µrad"
     assert main([*words, "--u-um", "0.5", "--force"]) == 2, "an angle has its uncertainty in µrad"
     words[3] = "EBC"
-    assert main([*words, "--u-urad", "0.5", "--force"]) == 2
-    assert "expected a component error of X, Y or Z" in capsys.readouterr().err
+    assert "expected a component error of X, Y or Z" in refusal(
+        [*words, "--u-urad", "0.5", "--force"]
+    )
 
 
 def test_positioning_asks_for_its_own_table(tmp_path) -> None:

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from matstd.cli import main
 from matstd.importers import read_positioning, read_sheet
 from matstd.importers.instruments import positioning_figures
 from matstd.importers.sheets import approaches
@@ -112,16 +111,16 @@ def test_figures_of_the_standard_by_hand(tmp_path):
     assert found.accuracy / UM == pytest.approx(8.0 + 4.0 * s)
 
 
-def test_import_reports_the_figures_and_what_is_missing(tmp_path, capsys):
+def test_import_reports_the_figures_and_what_is_missing(tmp_path, answer):
     path = tmp_path / "parts.md"
     path.write_text(PARTS, encoding="utf-8")
     arguments = ["--positioning", "X", "--u-um", "1", "-o", str(tmp_path / "a.csv")]
-    assert main(["import", str(path), *arguments]) == 0
-    message = capsys.readouterr().out
+    message = answer(["import", str(path), *arguments])
     assert "ISO 230-2: reversal B 5 µm (mean 4), M 4, E 8, R 10.7, A 13.7 µm" in message
     path.write_text("target [mm],1 [µm],2 [µm]\n0,1,2\n10,3,4\n", encoding="utf-8")
-    assert main(["import", str(path), *arguments, "--force"]) == 0
-    assert "no direction of approach is stated" in capsys.readouterr().out
+    assert "no direction of approach is stated" in answer(
+        ["import", str(path), *arguments, "--force"]
+    )
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from matstd.cli import main
 from matstd.importers import read_sheet
 from matstd.importers.files import mapped_run
 from matstd.importers.sheets import seconds
@@ -62,10 +61,9 @@ def folder(tmp_path):
     return tmp_path
 
 
-def test_a_row_of_five_probes_is_as_many_rows_of_one_pose(folder, capsys):
+def test_a_row_of_five_probes_is_as_many_rows_of_one_pose(folder, answer):
     words = ["import", str(folder / "table.csv"), "--map", str(folder / "map.toml")]
-    assert main([*words, "-o", str(folder / "run.csv")]) == 0
-    assert "1 reading left out" in capsys.readouterr().out
+    assert "1 reading left out" in answer([*words, "-o", str(folder / "run.csv")])
     run = read_run(folder / "run.csv")
     np.testing.assert_allclose(run.deviation / UM, [1.0, -2.0, 1.5, 2.0, -4.0])
     assert run.touches.pose.tolist() == [0, 0, 1, 2, 2]

@@ -113,13 +113,12 @@ def test_the_readings_of_a_report_are_found(tmp_path, kind):
             np.testing.assert_allclose(test.deviation[own][order] / UM, values[:, j], atol=1e-9)
 
 
-def test_tables_are_listed_and_one_can_be_chosen(tmp_path, capsys):
+def test_tables_are_listed_and_one_can_be_chosen(tmp_path, answer):
     path = tmp_path / "report.csv"
     path.write_text(REPORTS["two axes"], encoding="utf-8")
     words = ["import", str(path), "--positioning", "X", "--u-um", "0.3", "--force"]
     out = ["-o", str(tmp_path / "run.csv")]
-    assert main([*words, *out]) == 0
-    said = capsys.readouterr().out
+    said = answer([*words, *out])
     assert "1 (line 3, 7 rows): Target [mm], 1 up [µm]" in said
     assert "table 3 is read" in said
     assert np.abs(read_run(tmp_path / "run.csv").deviation).max() < 10.0 * UM

@@ -11,7 +11,6 @@ from programs import as_read, left_log, ran
 
 from matstd.artefact.body import write_standard
 from matstd.artefact.tool import home_readings
-from matstd.cli import main
 from matstd.probe_paths.campaign import VirtualMachine, ball_changes, check_changes, check_moves
 from matstd.probe_paths.control import read_log
 from matstd.probe_paths.emit import make_ball
@@ -127,7 +126,7 @@ def test_no_ball_no_program(plan):
 
 
 def test_evaluate_reports_the_change_and_refuses_beyond_the_limit(
-    logged, programs, read, small, chain, golden, tmp_path, capsys
+    logged, programs, read, small, chain, golden, tmp_path, answer, refusal
 ):
     run = ran(read[0], small, VirtualMachine(chain))
     folder = tmp_path
@@ -140,13 +139,14 @@ def test_evaluate_reports_the_change_and_refuses_beyond_the_limit(
     words = ["--standard", str(folder / "standard.toml"), "--machine", str(machine)]
     logs = [str(path) for path in sorted(folder.glob("*.TXT"))]
     out = folder / "run.csv"
-    assert main(["evaluate", *logs, *words, "-o", str(out)]) == 2
-    assert "by 15.0 µm, expected 10 µm at most" in capsys.readouterr().err
+    assert "by 15.0 µm, expected 10 µm at most" in refusal(
+        ["evaluate", *logs, *words, "-o", str(out)]
+    )
     assert not out.exists()
     for wrong in ("0", "-3", "nan"):
-        assert main(["evaluate", *logs, *words, "--probe-limit-um", wrong, "-o", str(out)]) == 2
-        assert "--probe-limit-um" in capsys.readouterr().err
-    assert main(["evaluate", *logs, *words, "--probe-limit-um", "40", "-o", str(out)]) == 0
-    output = capsys.readouterr().out
+        assert "--probe-limit-um" in refusal(
+            ["evaluate", *logs, *words, "--probe-limit-um", wrong, "-o", str(out)]
+        )
+    output = answer(["evaluate", *logs, *words, "--probe-limit-um", "40", "-o", str(out)])
     assert "ball SPH1, 08:00 to 11:00 (3.00 h, 8 touches)" in output
     assert f"{len(read[0].touches)} touches" in output

@@ -6,7 +6,6 @@ from pathlib import Path
 import pytest
 from formats import examples
 
-from matstd.cli import main
 from matstd.probe_paths.control import interpret
 from matstd.probe_paths.emit import Feeds, make_programs
 from matstd.probe_paths.language import Dialect, read_dialect
@@ -73,11 +72,10 @@ def test_a_bad_dialect_is_one_line(old, new, reason, tmp_path):
     assert "\n" not in str(refusal.value)
 
 
-def test_a_control_that_is_unknown_is_refused_before_any_work(tmp_path, capsys):
+def test_a_control_that_is_unknown_is_refused_before_any_work(tmp_path, refusal):
     with pytest.raises(DesignError, match="expected one of itnc530"):
         read_dialect("fanuc")
     project = ROOT / "examples" / "hsm600u.toml"
-    assert main(["design", str(project), "-o", str(tmp_path / "out"), "--control", "fanuc"]) == 2
-    error = capsys.readouterr().err
+    error = refusal(["design", str(project), "-o", str(tmp_path / "out"), "--control", "fanuc"])
     assert re.match(r"matstd design: control 'fanuc': expected one of .*\n\Z", error)
     assert not (tmp_path / "out").exists()

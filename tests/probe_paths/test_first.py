@@ -129,22 +129,20 @@ def test_another_language_and_a_pose_beside_home_are_refused(plan):
         make_first(replace(ball, visits=(visit,)))
 
 
-def test_simulate_and_evaluate_take_it(made, small, tmp_path, capsys):
+def test_simulate_and_evaluate_take_it(made, small, tmp_path, answer, refusal):
     write_standard(tmp_path / "standard.toml", small)
     (path,) = made.write(tmp_path)
     machine = Path(__file__).parents[2] / "examples" / "hsm600u-machine.toml"
     words = ["--standard", str(tmp_path / "standard.toml"), "--machine", str(machine)]
     out = ["-o", str(tmp_path / "run.csv")]
-    assert main(["simulate", str(path), *words, *out]) == 2
-    assert "a commissioning program leave a log" in capsys.readouterr().err
+    assert "a commissioning program leave a log" in refusal(["simulate", str(path), *words, *out])
     assert main(["simulate", str(path), *words, *out, "--logs", str(tmp_path)]) == 0
     log = str(tmp_path / "MS_A_COM.TXT")
     text = Path(log).read_text(encoding="ascii")
     calibrated = re.sub(r"(?m)^R +3\.000000", "R     3.250000", text)  # another stylus
     assert calibrated != text
     Path(log).write_text(calibrated, encoding="ascii")
-    assert main(["evaluate", log, *words, *out]) == 0
-    output = capsys.readouterr().out
+    output = answer(["evaluate", log, *words, *out])
     assert "no run file" in output
     assert "Z of the control refers to gauge (--z gauge)" in output
     assert "radius of the ball 3.2500 mm as calibrated, 3.0000 mm as planned" in output

@@ -10,7 +10,6 @@ from programs import all_read, as_read, ran
 from matstd.api.replanning import feeds_of
 from matstd.artefact.body import Base, contact
 from matstd.artefact.tool import Probe
-from matstd.cli import main
 from matstd.probe_paths.campaign import VirtualMachine, ball_centres, check_moves, simulate_search
 from matstd.probe_paths.control import read_log, read_program
 from matstd.probe_paths.emit import Feeds, make_programs, make_search
@@ -148,12 +147,11 @@ def test_only_a_search_may_go_far_and_only_down(old, new, expected, search, chai
 
 @pytest.mark.slow
 def test_programs_are_planned_again_where_the_standard_stands(
-    log, design, chain, small, golden, tmp_path, capsys
+    log, design, chain, small, golden, tmp_path, answer
 ):
     out = tmp_path / "again"
     words = ["--within-mm", "6", "--within-deg", "1.5"]
-    assert main(["replan", str(log), "--design", str(design), *words, "-o", str(out)]) == 0
-    output = capsys.readouterr().out
+    output = answer(["replan", str(log), "--design", str(design), *words, "-o", str(out)])
     number = r"([+-]\d+\.\d+) ± "
     shift = [float(re.search(rf"- {a} {number}", output)[1]) for a in "xyz"]
     assert np.abs(np.array(shift) - [5.0, -4.0, 3.0]).max() < 0.05
@@ -174,10 +172,11 @@ def test_programs_keep_their_feeds_when_planned_again(plan, chain):
     assert feeds_of(all_read(make_programs(plan, feeds=feeds), chain), chain) == feeds
 
 
-def test_a_log_of_another_standard_is_refused(log, design, tmp_path, capsys):
+def test_a_log_of_another_standard_is_refused(log, design, tmp_path, refusal):
     other = tmp_path / log.name
     other.write_text(log.read_text(encoding="ascii").replace("SMALL-1", "SMALL-2"), "ascii")
     out = tmp_path / "again"
-    assert main(["replan", str(other), "--design", str(design), "-o", str(out)]) == 2
-    assert "was written for SMALL-2" in capsys.readouterr().err
+    assert "was written for SMALL-2" in refusal(
+        ["replan", str(other), "--design", str(design), "-o", str(out)]
+    )
     assert not out.exists()
