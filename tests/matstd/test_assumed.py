@@ -47,18 +47,16 @@ def place(tmp_path, monkeypatch) -> Path:
         ["sensitivity", "machine.toml", "poses.csv", "-o", "out.csv"],
     ],
 )
-def test_tables_say_it(place, capsys, words) -> None:
-    assert main(words) == 0
-    assert LINE in capsys.readouterr().out
+def test_tables_say_it(place, answer, words) -> None:
+    assert LINE in answer(words)
 
 
 @pytest.mark.slow
-def test_a_study_says_it_on_the_console_and_on_its_page(place, capsys) -> None:
+def test_a_study_says_it_on_the_console_and_on_its_page(place, answer) -> None:
     project = 'format = "project/1"\nseed = 1\nmachine = "machine.toml"\n[workspace]\nposes = 500\n'
     project += "[montecarlo]\ndraws = 100\n[probe]\nradius_mm = 3.0\nlength_mm = 160.0\n"
     Path("project.toml").write_text(project)
-    assert main(["sensitivity", "project.toml", "-o", "out"]) == 0
-    assert capsys.readouterr().out.startswith(LINE)
+    assert answer(["sensitivity", "project.toml", "-o", "out"]).startswith(LINE)
     assert LINE.removeprefix("- ") in Path("out/report.html").read_text(encoding="utf-8")
 
 

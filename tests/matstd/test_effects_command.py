@@ -15,9 +15,8 @@ def eighty_columns(monkeypatch):
     monkeypatch.setenv("COLUMNS", "80")
 
 
-def test_every_kind_with_formula_units_size_and_source(capsys) -> None:
-    assert main(["effects"]) == 0
-    words = "".join(capsys.readouterr().out.split())
+def test_every_kind_with_formula_units_size_and_source(answer) -> None:
+    words = "".join(answer(["effects"]).split())
     for kind in library.kinds():
         for text in (kind.usage, kind.summary, kind.formula, kind.units, kind.typical, kind.source):
             assert "".join(text.split()) in words
@@ -28,37 +27,33 @@ def test_lines_fit_the_console(capsys) -> None:
     assert max(len(line) for line in capsys.readouterr().out.splitlines()) <= 80
 
 
-def test_one_kind_states_its_whole_story(capsys) -> None:
-    assert main(["effects", "gravity(EBB)"]) == 0
-    out = " ".join(capsys.readouterr().out.split())
+def test_one_kind_states_its_whole_story(answer) -> None:
+    out = " ".join(answer(["effects", "gravity(EBB)"]).split())
     for phrase in ("cantilever under a load", "E = a sin 2q", "off the centre of the table"):
         assert phrase in out
     assert "backlash" not in out
     assert "Attributes" not in out
 
 
-def test_kinds_are_found_by_any_word_for_them(capsys) -> None:
-    assert main(["effects", "spindle", "growth"]) == 0
-    out = capsys.readouterr().out
+def test_kinds_are_found_by_any_word_for_them(answer) -> None:
+    out = answer(["effects", "spindle", "growth"])
     assert out.startswith("thermal-lag(symbol[,sensor, spindle_rpm or V_column])  spindle growth")
     assert "cold at time zero" in " ".join(out.split())
-    assert main(["effects", "growth"]) == 0
-    out = capsys.readouterr().out
+    out = answer(["effects", "growth"])
     assert "thermal-lag(" in out
     assert "thermal-expansion(" in out
     assert "backlash" not in out
 
 
-def test_unknown_kind_is_one_line(capsys) -> None:
-    assert main(["effects", "flux", "capacitor"]) == 2
-    error = capsys.readouterr().err
+def test_unknown_kind_is_one_line(refusal) -> None:
+    error = refusal(["effects", "flux", "capacitor"])
     assert error.count("\n") == 1
     assert error.startswith(
         "matstd effects: unknown kind 'flux capacitor'; available: geometric, location"
     )
 
 
-def test_own_effects_stand_in_the_table(capsys, tmp_path: Path) -> None:
+def test_own_effects_stand_in_the_table(answer, tmp_path: Path) -> None:
     file = tmp_path / "mine.py"
     file.write_text(
         "from matstd.twin.model import Kind\n"
@@ -66,15 +61,15 @@ def test_own_effects_stand_in_the_table(capsys, tmp_path: Path) -> None:
         "            lambda chain, arguments: None, lambda touches: [])\n",
         encoding="utf-8",
     )
-    assert main(["effects", "--effects", str(file)]) == 0
-    assert "EYZ = a X^2" in capsys.readouterr().out
+    assert "EYZ = a X^2" in answer(["effects", "--effects", str(file)])
 
 
-def test_a_file_that_fails_is_one_line(capsys, tmp_path: Path) -> None:
+def test_a_file_that_fails_is_one_line(refusal, tmp_path: Path) -> None:
     file = tmp_path / "mine.py"
     file.write_text("1/0\n", encoding="utf-8")
-    assert main(["effects", "--effects", str(file)]) == 2
-    assert "found ZeroDivisionError: division by zero" in capsys.readouterr().err
+    assert "found ZeroDivisionError: division by zero" in refusal(
+        ["effects", "--effects", str(file)]
+    )
 
 
 def test_no_scipy_is_loaded() -> None:

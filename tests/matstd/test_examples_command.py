@@ -9,17 +9,15 @@ from matstd.commands.machine.examples import EXAMPLES
 from matstd.twin.files import read_run
 
 
-def test_the_list_names_every_example(capsys):
-    assert main(["examples"]) == 0
-    said = capsys.readouterr().out
+def test_the_list_names_every_example(answer):
+    said = answer(["examples"])
     assert all(name in said for name in EXAMPLES)
 
 
 @pytest.mark.parametrize("name", EXAMPLES)
-def test_a_copy_has_what_the_next_command_reads(name, tmp_path, capsys):
+def test_a_copy_has_what_the_next_command_reads(name, tmp_path, answer):
     folder = tmp_path / "copy"
-    assert main(["examples", name, "-o", str(folder)]) == 0
-    last = capsys.readouterr().out.splitlines()[-1]
+    last = answer(["examples", name, "-o", str(folder)]).splitlines()[-1]
     words = shlex.split(last.removeprefix("next: ").partition("   (")[0])
     files = [word for word in words if word.startswith(str(folder))]
     assert files
@@ -29,12 +27,11 @@ def test_a_copy_has_what_the_next_command_reads(name, tmp_path, capsys):
             assert len(read_run(file)) > 50
 
 
-def test_files_of_the_user_are_not_replaced(tmp_path, capsys):
+def test_files_of_the_user_are_not_replaced(tmp_path, refusal):
     mine = tmp_path / "hidden_effect" / "warm_up.csv"
     mine.parent.mkdir()
     mine.write_text("mine", encoding="utf-8")
-    assert main(["examples", "hidden-effect", "-o", str(tmp_path)]) == 2
-    assert "already exists" in capsys.readouterr().err
+    assert "already exists" in refusal(["examples", "hidden-effect", "-o", str(tmp_path)])
     assert [p.name for p in mine.parent.iterdir()] == ["warm_up.csv"]
     assert mine.read_text(encoding="utf-8") == "mine"
     assert main(["examples", "hidden-effect", "-o", str(tmp_path), "--force"]) == 0

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from matstd.api.machines import machine_names
-from matstd.cli import main
 from matstd.commands.machine.machines import text
 from matstd.twin.files import read_errors, read_machine
 from matstd.twin.model import Model
@@ -47,14 +46,10 @@ def test_the_machine_of_1995_is_as_published(tmp_path):
         np.testing.assert_allclose(np.abs(moved[1] - moved[0]).max(), published, rtol=1e-3)
 
 
-def test_command(capsys):
-    assert main(["machines"]) == 0
-    said = capsys.readouterr().out
+def test_command(answer, refusal):
+    said = answer(["machines"])
     assert all(name in said for name in ("hsm600u", "afm-r1000", "hmc1995", "fork"))
     assert "6 published errors" in said
-    assert main(["machines", "hmc1995"]) == 0
-    assert capsys.readouterr().out == text("hmc1995")
-    assert main(["machines", "hmc1995", "--errors"]) == 0
-    assert capsys.readouterr().out.startswith("# What Chen")
-    assert main(["machines", "hmc1996"]) == 2
-    assert "did you mean hmc1995?" in capsys.readouterr().err
+    assert answer(["machines", "hmc1995"]) == text("hmc1995")
+    assert answer(["machines", "hmc1995", "--errors"]).startswith("# What Chen")
+    assert "did you mean hmc1995?" in refusal(["machines", "hmc1996"])

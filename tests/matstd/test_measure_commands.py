@@ -46,11 +46,10 @@ def folder(tmp_path_factory):
     return place
 
 
-def test_sizes_and_what_is_left_are_said_in_words(folder, tmp_path, capsys, monkeypatch) -> None:
+def test_sizes_and_what_is_left_are_said_in_words(folder, tmp_path, answer, monkeypatch) -> None:
     monkeypatch.setenv("COLUMNS", "100")
     run = str(folder / "run.csv")
-    assert main(["diagnose", run, "-o", str(tmp_path / "out"), *NARROW]) == 0
-    lines = capsys.readouterr().out.splitlines()
+    lines = answer(["diagnose", run, "-o", str(tmp_path / "out"), *NARROW]).splitlines()
     assert lines[0].startswith(
         "missing effect: The model lacks one effect: reversal of Y (amplitude"
     )
@@ -85,20 +84,20 @@ def test_a_model_of_another_machine_is_refused(
     assert not (tmp_path / "o").exists()
 
 
-def test_no_touch_counts_twice(folder, tmp_path, capsys) -> None:
+def test_no_touch_counts_twice(folder, tmp_path, answer) -> None:
     """Begun with a model of the same run, the same estimates come out, not surer ones."""
     run, model = str(folder / "run.csv"), folder / "added" / "model.toml"
     again = tmp_path / "again"
-    assert main(["diagnose", run, "--model", str(model), "-o", str(again), *NARROW]) == 0
-    assert "learnt from this very run" in capsys.readouterr().out
+    assert "learnt from this very run" in answer(
+        ["diagnose", run, "--model", str(model), "-o", str(again), *NARROW]
+    )
     first, second = read_model(model), read_model(again / "model.toml")
     u = [float(np.linalg.norm(m.estimates.root[-1])) for m in (first, second)]  # of the reversal
     assert u[1] == pytest.approx(u[0], rel=SAME_U)
     assert abs(second.estimates.mean[-1] - first.estimates.mean[-1]) < u[0]
     assert second.source.learnt_from == [read_run(run).fingerprint]
     words = ["compare", run, "--model", str(model), "-o", str(tmp_path / "c"), "--no-report"]
-    assert main(words) == 0
-    assert "so the agreement is optimistic" in capsys.readouterr().out
+    assert "so the agreement is optimistic" in answer(words)
 
 
 def test_a_model_says_what_it_rests_upon(folder, tmp_path) -> None:
@@ -137,10 +136,9 @@ def test_effects_that_cannot_be_added(folder, tmp_path, capsys, effects, expecte
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_named_effect_is_not_called_missing(folder, tmp_path, capsys) -> None:
+def test_a_named_effect_is_not_called_missing(folder, tmp_path, answer) -> None:
     words = ["diagnose", str(folder / "run.csv"), "--add", "probe-radius", *NARROW]
-    assert main([*words, "-o", str(tmp_path / "o")]) == 0
-    message = capsys.readouterr().out
+    message = answer([*words, "-o", str(tmp_path / "o")])
     assert "The model lacks one effect: reversal of Y" in message
     assert "Added by name: effective radius of the ball" in message
 

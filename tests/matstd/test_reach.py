@@ -188,14 +188,13 @@ def with_few_sites(patches, reach, blank, poses, _sites, seed):
 
 
 def test_patches_that_do_not_fit_are_reported_with_a_picture(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, refusal, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("matstd.stages.design.design_standard", None)  # not begun
     monkeypatch.setattr(side_by_side, "room_for", with_few_sites)
     wide = {r"\Z": "gap_mm = 120.0\n"}  # behind the table [limits]
     path, out = changed(tmp_path, "vertical", wide, {}), tmp_path / "out"
-    assert main(["design", str(path), "-o", str(out)]) == 2
-    (message,) = re.findall(r"(?m)^matstd .*", capsys.readouterr().err)
+    (message,) = re.findall(r"(?m)^matstd .*", refusal(["design", str(path), "-o", str(out)]))
     assert [p.name for p in out.iterdir()] == [REFUSED_ROOM]
     assert re.search(r"only 1 of 6 patches fit on the blank side by side", message)
     assert re.search(r"; limits\.gap_mm = \d+ would do; ", message)
@@ -261,11 +260,10 @@ def test_what_cannot_be_built_says_which_keys_to_change(tmp_path, facts, change)
 
 
 def test_a_rotary_range_at_the_end_of_its_travel_is_refused_with_its_numbers(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, refusal
 ) -> None:
     path = changed(tmp_path, "trunnion", {r"^A = .*": "A = [29.0, 29.5]"}, {})
-    assert main(["design", str(path), "-o", str(tmp_path / "out")]) == 2
-    message = capsys.readouterr().err
+    message = refusal(["design", str(path), "-o", str(tmp_path / "out")])
     assert "readings of A from 29 to" in message
     assert "6 degrees away, within the travel" in message
     assert message.startswith(f"matstd design: {path}: ")

@@ -8,7 +8,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from matstd.cli import main
 from matstd.sensitivity import montecarlo
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -28,15 +27,14 @@ def add(project, text):
     project.write_text(project.read_text(encoding="utf-8") + text, encoding="utf-8")
 
 
-def test_a_study_stands_in_a_folder_with_its_precision(project, tmp_path, capsys, monkeypatch):
+def test_a_study_stands_in_a_folder_with_its_precision(project, tmp_path, answer, monkeypatch):
     """Without its maps, which `tests/sensitivity/test_study.py` and `tests/report` draw."""
     monkeypatch.setattr("matstd.stages.study_run.draw_maps", lambda *_: [])
     monkeypatch.setattr("matstd.report.pages.study_page.draw_study_volumes", lambda *_: [])
     add(project, '\n[[errors.groups]]\nnames = ["EXX", "-EYX"]\ncorrelation = 0.5\n')
     add(project, '[errors.shapes]\nEXX = { shapes = ["parabolic"] }\n')
     out = tmp_path / "out"
-    assert main(["sensitivity", str(project), "-o", str(out), "--tolerance-um", "300"]) == 0
-    said = capsys.readouterr().out
+    said = answer(["sensitivity", str(project), "-o", str(out), "--tolerance-um", "300"])
     figures = json.loads((out / "montecarlo.json").read_text(encoding="utf-8"))
     assert figures["draws"] == 300
     assert figures["seed"] == "600/0.1"
@@ -67,10 +65,9 @@ def test_a_study_stands_in_a_folder_with_its_precision(project, tmp_path, capsys
         ('\n[errors.shapes]\nEXX = { shapes = ["linear"], weights = [1, 2] }\n', "weights"),
     ],
 )
-def test_errors_that_no_machine_can_have_are_one_line(project, tmp_path, capsys, text, words):
+def test_errors_that_no_machine_can_have_are_one_line(project, tmp_path, refusal, text, words):
     add(project, text)
-    assert main(["sensitivity", str(project), "-o", str(tmp_path / "out")]) == 2
-    line = capsys.readouterr().err
+    line = refusal(["sensitivity", str(project), "-o", str(tmp_path / "out")])
     assert line.count("\n") == 1
     assert words in line
     assert not (tmp_path / "out").exists()
@@ -85,20 +82,19 @@ def test_errors_that_no_machine_can_have_are_one_line(project, tmp_path, capsys,
     ],
 )
 def test_settings_that_cannot_be_met_are_one_line(
-    project, tmp_path, capsys, monkeypatch, options, words
+    project, tmp_path, refusal, monkeypatch, options, words
 ):
     in_short = partial(montecarlo.cluster, answer=0.3)
     monkeypatch.setattr(montecarlo, "cluster", in_short)  # a scheduler has 5 s to answer
-    assert main(["sensitivity", str(project), "-o", str(tmp_path / "out"), *options]) == 2
-    line = capsys.readouterr().err
+    line = refusal(["sensitivity", str(project), "-o", str(tmp_path / "out"), *options])
     assert line.count("\n") == 1
     assert words in line
     assert not (tmp_path / "out").exists()
 
 
-def test_random_machines_need_a_project(tmp_path, capsys):
+def test_random_machines_need_a_project(tmp_path, refusal):
     machine, out = str(EXAMPLES / "hsm600u-machine.toml"), str(tmp_path / "out.csv")
-    assert main(["sensitivity", machine, "-o", out]) == 2
-    assert "followed by poses" in capsys.readouterr().err
-    assert main(["sensitivity", machine, "poses.csv", "-o", out, "--draws", "9"]) == 2
-    assert "--draws is for the random machines" in capsys.readouterr().err
+    assert "followed by poses" in refusal(["sensitivity", machine, "-o", out])
+    assert "--draws is for the random machines" in refusal(
+        ["sensitivity", machine, "poses.csv", "-o", out, "--draws", "9"]
+    )

@@ -165,9 +165,7 @@ def test_too_little_and_the_same_twice(place: Path, capsys: pytest.CaptureFixtur
     assert not (place / "u2.json").exists()
 
 
-def test_where_hardly_anything_was_touched(
-    place: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path
-) -> None:
+def test_where_hardly_anything_was_touched(place: Path, answer, refusal, tmp_path: Path) -> None:
     files = []
     for k, keep in enumerate(("FF1", "FF1", "none")):
         text = (place / f"v{k}.csv").read_text(encoding="utf-8").splitlines(keepends=True)
@@ -176,12 +174,12 @@ def test_where_hardly_anything_was_touched(
         file.write_text("".join(kept).replace("machine.toml", str(place / "machine.toml")))
         files.append(str(file))
     more = ["--standard", str(place / "standard.toml"), "-o", str(tmp_path / "u.json")]
-    assert main(["uncertainty", *files[:2], *more]) == 0
-    said = capsys.readouterr().out
+    said = answer(["uncertainty", *files[:2], *more])
     assert "10 places on 1 face at 5 table poses in 2 visits" in said
     assert "only one face: U holds for workpieces at its place" in said
-    assert main(["uncertainty", files[2], files[0], *more, "--force"]) == 2
-    assert "no touch on a feature of standard" in capsys.readouterr().err
+    assert "no touch on a feature of standard" in refusal(
+        ["uncertainty", files[2], files[0], *more, "--force"]
+    )
 
 
 def test_a_run_of_another_standard(place: Path) -> None:
