@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from matstd.artefact.body import Standard, read_standard
-from matstd.cad_out.details import details_of
+from matstd.cad_out.details import Details, details_of
 from matstd.cad_out.making import joints_of
 from matstd.cad_out.meshes import (
     Mesh,
@@ -42,7 +42,7 @@ _REFINEMENT_FACTOR = 0.7  # of the last
 
 
 def build(folder: str, chord: float, author: str, organisation: str) -> None:
-    """Build the standard of a folder: STEP file, triangles, facts about the solid.
+    """Build the standard of a folder: STEP file, triangles, facts about the solid and the file.
 
     Args:
         folder: Holds standard.toml; takes the results.
@@ -50,27 +50,30 @@ def build(folder: str, chord: float, author: str, organisation: str) -> None:
     """
     from matstd.cad_out.kernel.assembly import face_products, products_of, whole_name
     from matstd.cad_out.kernel.exchange import Origin, write_step
+    from matstd.cad_out.kernel.reader import read_step
 
     place = Path(folder)
     standard = read_standard(place / STANDARD)
-    solid, products = products_of(standard, details_of(standard))
+    details = details_of(standard)
+    solid, products = products_of(standard, details)
     design = hashlib.sha256((place / STANDARD).read_bytes()).hexdigest()
     origin, name = Origin(design, author, organisation), whole_name(standard)
     write_step(place / STEP, products, name, origin)
     write_step(place / FACES, face_products(solid), f"{name} FACES", origin)
-    parts = _write_parts(standard, products, place / SHOP_PARTS, origin)
+    parts = _write_parts(standard, details, products, place / SHOP_PARTS, origin)
     mesh, farthest = _mesh(standard, solid, chord)
     np.savez(place / MESH, corners=mesh.corners, triangles=mesh.triangles, owner=mesh.owner)
     pieces = _pieces(standard, products, mesh)
     write_3mf(place / SCENES[0], standard.name, pieces)
     write_glb(place / SCENES[1], pieces)
     volumes = {product.name: product.volume for product in products}
-    facts = {"volumes": volumes, "body_chord_error": farthest, "parts": parts}
+    found = asdict(read_step(place / STEP))
+    facts = {"volumes": volumes, "body_chord_error": farthest, "parts": parts, "reread": found}
     (place / FACTS).write_text(json.dumps(facts), encoding="utf-8")
 
 
 def _write_parts(
-    standard: Standard, products: Sequence[Product], path: Path, origin: Origin
+    standard: Standard, details: Details, products: Sequence[Product], path: Path, origin: Origin
 ) -> dict[str, int]:
     """The standard as plate, studs and blocks, re-read; none where it cannot be made of parts.
 
@@ -82,7 +85,6 @@ def _write_parts(
     from matstd.cad_out.kernel.parts import parts_of
     from matstd.cad_out.kernel.reader import read_step
 
-    details = details_of(standard)
     try:
         joints = joints_of(standard, details)
     except NotBuildable:
@@ -114,14 +116,6 @@ def _pieces(standard: Standard, products: Sequence[Product], mesh: Mesh) -> list
         colours = [role[name] for name in mine.owner]
         out.append(Piece(product.name, mine, np.array(colours), product.places))
     return out
-
-
-def reread(folder: str) -> None:
-    """Re-read the STEP file of a folder and write what the kernel finds in it."""
-    from matstd.cad_out.kernel.reader import read_step
-
-    facts = asdict(read_step(Path(folder) / STEP))
-    (Path(folder) / FACTS).write_text(json.dumps(facts), encoding="utf-8")
 
 
 def mesh_step(folder: str, chord: float) -> None:

@@ -8,8 +8,8 @@ number of crossings leads to it from outside.
 from functools import cached_property
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import breadth_first_order, connected_components
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import connected_components
 from scipy.spatial import Delaunay, cKDTree
 
 from matstd.twin.frames import Array
@@ -55,20 +55,18 @@ class Sheet:
     @cached_property
     def inside(self) -> np.ndarray:
         """Mask of triangles inside the outline, by the parity of crossings, (T,)."""
-        count = len(self.wall)
-        a = np.repeat(np.arange(count), 3)
-        b, is_wall = self._whole.neighbors.ravel(), self.wall.ravel() >= 0
-        free = (b >= 0) & ~is_wall
-        size = (count, count)
-        ways = coo_array((np.ones(free.sum()), (a[free], b[free])), shape=size)
-        _, room = connected_components(ways, directed=False)
-        doors = coo_array((np.ones(is_wall.sum()), (room[a[is_wall]], room[b[is_wall]])), size)
-        outer = room[np.flatnonzero(self._whole.neighbors.min(axis=1) < 0)[0]]
-        order, before = breadth_first_order(doors.tocsr(), outer, directed=False)
-        inside = np.zeros(count, dtype=bool)
-        for k in order[1:]:
-            inside[k] = not inside[before[k]]
-        return inside[room]
+        beside, is_wall = self._whole.neighbors, self.wall >= 0
+        free = (beside >= 0) & ~is_wall
+        rows = np.concatenate([[0], np.cumsum(free.sum(axis=1))])
+        ways = csr_array((np.ones(rows[-1]), beside[free], rows), shape=(len(beside),) * 2)
+        count, room = connected_components(ways, directed=False)
+        row, k = np.nonzero(is_wall)
+        here, there = room[row], room[beside[row, k]]
+        crossings = np.full(count, -1)
+        crossings[room[np.flatnonzero(beside.min(axis=1) < 0)[0]]] = 0
+        while (new := (crossings[here] >= 0) & (crossings[there] < 0)).any():
+            crossings[there[new]] = 1 + crossings[here[new]]
+        return crossings[room] % 2 == 1
 
     @cached_property
     def triangles(self) -> np.ndarray:

@@ -43,8 +43,8 @@ class Side:
 
     def refreshed(self, t: Array) -> Array:
         """Places in the chart of all points of the edge."""
-        new = np.setdiff1d(t, self.t)
-        if len(new):
+        if len(t) > len(self.t):  # an edge only gets more
+            new = np.setdiff1d(t, self.t)
             self.places = np.concatenate([self.places, self.at(new)])
             self.t, order = np.unique(np.concatenate([self.t, new]), return_index=True)
             self.places = self.places[order]

@@ -1,6 +1,5 @@
 """Conformity of the built files: they are re-read and compared with the design."""
 
-import json
 from collections import Counter
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -10,7 +9,7 @@ import numpy as np
 
 from matstd.artefact.body import BLEND, Standard
 from matstd.cad_out.details import BALL, Details, Screw, details_of
-from matstd.cad_out.kernel import FACES, FACTS, STEP, run_kernel
+from matstd.cad_out.kernel import FACES, STEP
 from matstd.cad_out.meshes import (
     aspects,
     chord_errors,
@@ -188,14 +187,14 @@ def measure(
     """Re-read the STEP and STL files and compare them with the design.
 
     Args:
-        folder: With the STEP file; the kernel's second process answers through it.
+        folder: With the STEP files.
         owner: Feature of each of its triangles, (F,).
         built: Facts of the building process: volume of every product before it was written,
-            mm^3, distance of the body's mesh from its faces, mm.
+            mm^3, distance of the body's mesh from its faces, mm, and what a fresh reader of the
+            kernel finds in the STEP file.
         chord: Asked for, mm.
     """
-    run_kernel("reread", folder)
-    found = json.loads((folder / FACTS).read_text(encoding="utf-8"))
+    found = built["reread"]
     entities, details = read_entities(folder / STEP), details_of(standard)
     faces, instances = read_faces(folder / STEP, entities), read_instances(entities)
     alone, wanted = read_faces(folder / FACES), face_names(standard, details)
