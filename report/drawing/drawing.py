@@ -24,7 +24,7 @@ from matstd.report.drawing.marks import (
 from matstd.report.drawing.sections import draw_face, draw_screw, draw_seat
 from matstd.report.drawing.sheet import PAPERS, Block, Paper, Sheet, View, block_of
 from matstd.report.drawing.tables import COLUMN, TITLE, Issuer, blocks_of, draw_title
-from matstd.report.drawing.views import draw_from, draw_top
+from matstd.report.drawing.views import draw_from, draw_hole_names, draw_top
 from matstd.twin.errors import NotBuildable
 from matstd.twin.files import written_whole
 
@@ -85,6 +85,7 @@ def draw_sheet(standard: Standard, details: Details, issuer: Issuer) -> Sheet:
         draw_tolerances(sheet, views, standard, details)
         draw_axes(sheet, views.top)
         sections = _sections(sheet, views.top, standard, details)
+        draw_hole_names(sheet, views.top, standard, details)
         if _fill(sheet, views, standard, sections, blocks):
             draw_title(sheet, standard, issuer, scale)
             return sheet
@@ -122,7 +123,7 @@ def _sections(
     sheet: Sheet, top: View, standard: Standard, details: Details
 ) -> list[Iterator[Block]]:
     """Sections with what they look like at every scale, the largest first, drawn when tried."""
-    ball, hole = draw_cuts(sheet, top, standard)
+    ball, hole = draw_cuts(sheet, top, standard, details)
     out: list[tuple[Callable[[Sheet, View], None], Iterable[float]]] = []
     if ball:
         out.append((partial(draw_seat, sphere=ball, standard=standard, details=details), _SECTIONS))

@@ -1,6 +1,7 @@
 """What is written at the views: dimensions, datums with their targets, tolerances, cuts, axes."""
 
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from matstd.twin.frames import Array
 
 BELOW = 42.0  # how far the marks of the view from above reach below it, mm of paper
 _FRAME, _DIMENSION = 27.0, 35.0  # mm of paper below the view from above
+_BEYOND = (5.0, 8.0, 11.0)  # mm of paper between a body and the marks of its cut
 _HALF, _BACK = 3.6, 14.0  # mm of paper: half of a mark of a cut, and how far it reaches back
 
 
@@ -126,11 +128,15 @@ def _free_face(sheet: Sheet, top: View, standard: Standard) -> tuple[Array, floa
 
 
 def draw_cuts(
-    sheet: Sheet, top: View, standard: Standard
+    sheet: Sheet, top: View, standard: Standard, details: Details
 ) -> tuple[DatumSphere | None, MountingHole | None]:
     """Cutting planes of the sections, through the ball and the hole that have most room."""
     balls = [(one.centre[:2], one.foot_radius) for one in standard.spheres]
-    holes = [(np.array([one.x, one.y]), one.bore_radius) for one in standard.holes]
+    pads = {(pad.x, pad.y): pad.radius for pad in details.pads}
+    holes = [
+        (np.array([one.x, one.y]), max(one.bore_radius, pads.get((one.x, one.y), 0.0)))
+        for one in standard.holes
+    ]
     ball, hole = (
         _cut(sheet, top, places, letter) if places else None
         for places, letter in ((balls, BALL_CUT), (holes, HOLE_CUT))
@@ -149,23 +155,24 @@ def draw_cuts(
 def _cut(sheet: Sheet, top: View, places: list[tuple[Array, float]], letter: str) -> int:
     """Marks of an upright cut through the round body that leaves them most room; its number."""
 
-    def marks(middle: Array, radius: float, way: Array) -> list[Array]:
-        beside = (top.scale * radius + 5.0) * np.array([way[1], -way[0]])
+    def marks(number: int, way: Array, beyond: float) -> list[Array]:
+        middle, radius = places[number]
+        beside = (top.scale * radius + beyond) * np.array([way[1], -way[0]])
         return [top.at(middle)[0] + side * beside for side in (-1.0, 1.0)]
 
-    def crowd(choice: tuple[int, Array]) -> int:
-        number, way = choice
+    def crowd(choice: tuple[int, Array, float]) -> int:
+        way = choice[1]
         across = np.abs([way[1], way[0]])
         return sum(
             sheet.crowd(*np.sort([at - _BACK * way - _HALF * across, at + _HALF * across], axis=0))
-            for at in marks(*places[number], way)
+            for at in marks(*choice)
         )
 
-    ways = (np.array([0.0, 1.0]), np.array([-1.0, 0.0]))
-    number, way = min(((k, w) for k in range(len(places)) for w in ways), key=crowd)
-    for at in marks(*places[number], way):
-        sheet.cut(at, way, letter)
-    return number
+    ways = [np.array(way) for way in ((0.0, 1.0), (-1.0, 0.0), (0.0, -1.0), (1.0, 0.0))]
+    chosen = min(product(range(len(places)), ways, _BEYOND), key=crowd)
+    for at in marks(*chosen):
+        sheet.cut(at, chosen[1], letter)
+    return chosen[0]
 
 
 def draw_axes(sheet: Sheet, top: View) -> None:

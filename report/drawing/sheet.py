@@ -175,7 +175,7 @@ class Sheet:
     ) -> None:
         """Words of a height in millimetres, standing on a line."""
         self._depth += 1e-3
-        wide, begin = _long(words, size), {"left": 0.0, "center": 0.5, "right": 1.0}[ha]
+        wide, begin = length_of(words, size), {"left": 0.0, "center": 0.5, "right": 1.0}[ha]
         box = np.array([[0.0, 0.0], [wide, 0.0], [wide, size], [0.0, size], [0.0, 0.0]])
         along = np.array([np.cos(np.radians(turn)), np.sin(np.radians(turn))])
         axes = np.array([along, [-along[1], along[0]]])
@@ -187,7 +187,7 @@ class Sheet:
 
     def label(self, middle: Any, radius: float, words: str, size: float = LETTER_HEIGHT) -> None:
         """Words beside a circle, on the side where least is drawn."""
-        p, half = np.asarray(middle, dtype=float), 0.5 * np.array([_long(words, size), size])
+        p, half = np.asarray(middle, dtype=float), 0.5 * np.array([length_of(words, size), size])
         reach = radius + 2.0 * half[0] + 2.0 * _CLEAR
         ink = self._dense_ink()
         ink = ink[(np.abs(ink - p) < reach).all(axis=1)]
@@ -273,7 +273,7 @@ class Sheet:
     def edges(self, x: float, y: float, outer: str, inner: str) -> None:
         """General signs of edges of undefined shape (ISO 13715): outer edges, inner edges."""
         for k, words in enumerate((outer, inner)):
-            at = x + 24.0 * k
+            at = x + 28.0 * k
             self.line([[at, y], [at + 3.0, y + 3.0], [at + 3.0, y + 7.0]], 0.3)
             self.line([[at + 3.0, y + 3.0], [at + 7.0, y + 3.0]], 0.3)
             self.text(at + 8.0, y + 3.2, words)
@@ -362,7 +362,7 @@ class Sheet:
         return y
 
 
-def _long(words: str, size: float) -> float:
+def length_of(words: str, size: float = LETTER_HEIGHT) -> float:
     """How long words are, mm."""
     return size * sum(_WIDE if letter.isupper() else _NARROW for letter in words)
 

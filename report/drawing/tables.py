@@ -268,7 +268,7 @@ def draw_title(sheet: Sheet, standard: Standard, issuer: Issuer, scale: float) -
         sheet.text(x + left + 1.2, y + low + 8.4, what)
         sheet.text(x + left + 1.2, y + low + 2.6, words, size=3.0 if low == 36.0 else 2.5)
     sheet.edges(x, y + h + 3.0, "-0.1 / -0.3", "+0.3")
-    sheet.text(x + 54.0, y + h + 6.0, "edges ISO 13715")
+    sheet.text(x + 56.0, y + h + 6.0, "edges ISO 13715")
     sheet.roughness((x + 98.0, y + h + 4.5), "Ra 3.2")
     sheet.text(x + 116.0, y + h + 6.0, "(Ra 0.8, Ra 0.4)  ISO 21920-1")
     sheet.box(x + 146.0, y, 34.0, 12.0)

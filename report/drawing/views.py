@@ -6,11 +6,12 @@ import numpy as np
 
 from matstd.artefact.body import DatumSphere, FreeformPatch, Standard
 from matstd.cad_out.details import DOT, RELIEF, Details
-from matstd.report.drawing.sheet import THIN, WIDE, Sheet, View
+from matstd.report.drawing.sheet import LETTER_HEIGHT, THIN, WIDE, Sheet, View, length_of
 from matstd.twin.frames import Array, apply
 from matstd.twin.sampling import grid_points
 
 _SAMPLES = 41  # along an edge of a face, at least: one every 2 mm of a large one
+_ROOM = 0.6  # mm of paper round a name that is clear of what is before it
 _LEVELS = 6  # lines of equal height on a face
 
 
@@ -33,7 +34,6 @@ def draw_top(sheet: Sheet, view: View, standard: Standard, details: Details) -> 
         if line.T_artefact_text[2, 2] > 0.5:
             for dot in apply(line.T_artefact_text, np.pad(line.dots, ((0, 0), (0, 1)))):
                 sheet.circle(view.at(dot[:2])[0], view.scale * DOT, 0.13)
-    _hole_names(sheet, view, standard, details)  # last, so that they find their way round the rest
 
 
 def _holes(sheet: Sheet, view: View, standard: Standard, details: Details) -> None:
@@ -54,7 +54,8 @@ def _holes(sheet: Sheet, view: View, standard: Standard, details: Details) -> No
             sheet.line(view.at(corners), THIN, "--")
 
 
-def _hole_names(sheet: Sheet, view: View, standard: Standard, details: Details) -> None:
+def draw_hole_names(sheet: Sheet, view: View, standard: Standard, details: Details) -> None:
+    """Names of holes and bores from above, where they find their way round what is drawn."""
     pads = {(pad.x, pad.y): pad.radius for pad in details.pads}
     for hole in standard.holes:
         radius = max(hole.bore_radius, pads.get((hole.x, hole.y), 0.0))
@@ -158,7 +159,7 @@ def _name_what_is_seen(sheet: Sheet, view: View, seen: list[_Seen]) -> None:
 
     for k, one in enumerate(seen):
         at = view.at(one.middle)[0]
-        half = np.array([0.9 * len(one.name), 1.3])
+        half = np.array([0.5 * length_of(one.name), 0.5 * LETTER_HEIGHT]) + _ROOM
         corners = at + half * [[-1, -1], [1, -1], [1, 1], [-1, 1], [0, 0]]
         nearer = (Path(view.at(outline)) for body in seen[k + 1 :] for outline in body.outlines)
         if not any(path.contains_points(corners).any() for path in nearer):
