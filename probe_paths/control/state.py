@@ -89,7 +89,7 @@ class State:
         missing = [
             name
             for name, there in (
-                ("M5", self.is_spindle_off or "M5" not in language_of(self.path).reset),
+                ("M5", self.is_spindle_off),
                 (self.terms.reset, self.is_tcpm_off),
                 (self.terms.plane, self.is_plane_off),
                 (self.terms.shift, self.shift_off == set("XYZ")),

@@ -25,6 +25,7 @@ _LINES = {
     Kind.END: r"\(END PGM (?P<name>\S+) (?P<unit>\S+)\)",
     Kind.STRUCTURE: r";\* (?P<text>.+)",
     Kind.COMMENT: r";(?P<text>.*)",
+    Kind.SPINDLE_OFF: r"M5",
     Kind.TCPM_OFF: re.escape(g.MODES),
     Kind.PLANE_OFF: r"G61",
     Kind.SHIFT: r"G92\.1",

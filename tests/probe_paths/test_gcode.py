@@ -127,6 +127,7 @@ def changed(text, old, new):
         ("O191 IF [#1613 LT +0]\nO91 CALL\nO191 ENDIF\n", "", "IF on the status of the touch"),
         ("G53 G0 Z-1.0000\nT30", "G53 G0 Z-100.0000\nT30", r"at least Z-20"),
         ("G61\n", "G64\n", r"'G64', expected"),
+        ("M5\n", "", r"M5 before it"),
         ("G61\n", "", r"G61 before it"),
         ("G92.1\n", "", r"G92.1 before it"),
         ("G43 G54\n", "G54\n", r"'G54', expected"),
@@ -206,6 +207,8 @@ def test_the_interpreter_of_linuxcnc_takes_every_block(number, for_linuxcnc, tmp
     done = rs274.interpreted(met, tmp_path)
     assert "PROGRAM_END" in done
     assert done.count("STRAIGHT_PROBE") == 2 * program.touches
+    # rs274 stops the spindle at M6, too, which may be remapped: M5 comes before the first move
+    assert "STOP_SPINDLE_TURNING" in done[: done.index("STRAIGHT_")]
     assert "PROGRAM_END" not in rs274.interpreted(met.replace("\nG0 Z", "\nG0 H", 1), tmp_path)
     at = np.zeros(6)
     for name, words in re.findall(r"(STRAIGHT_\w+)\(([^()]*)\)", done):
