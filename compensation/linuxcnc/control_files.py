@@ -79,7 +79,7 @@ def hal_text(control: Control, service: Service, limits: OutputLimits) -> str:
     words += ["--axes", "".join(a for a in control.letters if a in chain.axes)]
     words += ["--linear", "".join(linear), "--scale", f"{SCALE:g}"]
     words += ["--sensors", ",".join(service.sensors)]
-    words += ["--ends", ",".join("{}:{:g}:{:g}".format(a, *control.ends(a)) for a in linear)]
+    words += ["--ends", ",".join("{}:{:.10g}:{:.10g}".format(a, *control.ends(a)) for a in linear)]
     for name in ("most", "rate", "patience", "hold"):
         words += [f"--{name}", f"{getattr(limits, name):g}"]
     words = [w or "''" for w in words]

@@ -8,7 +8,7 @@ object a line, with a time and what was read then. Out comes a table with a colu
 import json
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from datetime import datetime
+from datetime import UTC, datetime
 from typing import NamedTuple
 
 import numpy as np
@@ -62,9 +62,8 @@ def _of_lines(lines: Sequence[tuple[int, str]]) -> list[Reading]:
     found = [(i, m) for i, line in lines if (m := _LINE.match(line))]
     if len(found) < MIN_LOG_SHARE * len(lines):
         return []
-    return [
-        Reading(i, m[1], _instant(f"{m[2]} {m[3][:15]}") or 0.0, _numbers(m[4])) for i, m in found
-    ]
+    dated = ((i, m, _instant(f"{m[2]} {m[3][:15]}")) for i, m in found)
+    return [Reading(i, m[1], time, _numbers(m[4])) for i, m, time in dated if time is not None]
 
 
 def _of_objects(lines: Sequence[tuple[int, str]]) -> list[Reading]:
@@ -95,13 +94,18 @@ def _leaves(value: object, above: str = "") -> Iterator[tuple[str, object]]:
 
 
 def _instant(value: object) -> float | None:
-    """A time in seconds: a number of them, or a date with its time."""
+    """A time in seconds: a number of them, or a date with its time.
+
+    Without a zone it counts as UTC: in the zone of the computer that reads it an hour of a night in
+    spring would be missing.
+    """
     if isinstance(value, int | float):
         return float(value)
     try:
-        return datetime.fromisoformat(str(value)).timestamp()
+        found = datetime.fromisoformat(str(value))
     except ValueError:
         return None
+    return (found if found.tzinfo else found.replace(tzinfo=UTC)).timestamp()
 
 
 def _numbers(text: str) -> list[float]:

@@ -61,11 +61,11 @@ def _check_steps(part: LogPart) -> None:
 
 def _check_common(key: str, parts: Sequence[LogPart]) -> None:
     """Refuse different presets in one campaign, or different tools of one probe."""
-    for part in parts[1:]:
-        first, own = getattr(parts[0], key), getattr(part, key)
-        is_same_probe = part.heading.probe == parts[0].heading.probe
-        if own != first and (is_same_probe or key == "preset"):
-            found = f"{own:g}, where {parts[0].path.name} has {first:g}"
+    for part in parts:
+        first = next(p for p in parts if key == "preset" or p.heading.probe == part.heading.probe)
+        own, stated = getattr(part, key), getattr(first, key)
+        if own != stated:
+            found = f"{own:g}, where {first.path.name} has {stated:g}"
             raise BadFile(part.path, key.upper(), found, f"one {key} for all logs of a campaign")
 
 

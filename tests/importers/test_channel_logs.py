@@ -1,6 +1,7 @@
 """Logs with a line a value: channels in turn, arrays, alarms between them."""
 
 import json
+import time as clock
 
 import numpy as np
 import pytest
@@ -58,3 +59,19 @@ def test_objects_a_line_are_channels_of_one_clock(tmp_path) -> None:
     np.testing.assert_allclose(bed, 20.0 + 0.5 * time, atol=1e-9)
     np.testing.assert_allclose(z, 0.0005 * (time - 1.0), atol=1e-9)
     assert np.all(air == 18.5)
+
+
+@pytest.mark.skipif(not hasattr(clock, "tzset"), reason="the zone of a process is fixed")
+def test_the_clock_of_a_log_does_not_change_with_the_zone_of_its_reader(
+    tmp_path, monkeypatch
+) -> None:
+    """In Berlin 2020-03-29 has no hour from two to three; a line with an impossible date goes."""
+    monkeypatch.setenv("TZ", "Europe/Berlin")
+    clock.tzset()
+    hours = ("00:59:59", "01:59:59", "02:30:00", "03:30:00", "04:30:00")
+    lines = [f"{c} 2020-03-29 {h} {k}.5" for k, h in enumerate(hours) for c in ("Act", "Ref")]
+    (tmp_path / "axis.log").write_text("\n".join([*lines, "Ref 2020-03-41 05:00:00 9.5"]))
+    time = read_sheet(tmp_path / "axis.log").numbers(0)
+    monkeypatch.undo()
+    clock.tzset()
+    np.testing.assert_allclose(np.diff(time), [3600.0, 1801.0, 3600.0, 3600.0])

@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from programs import all_read, parts_of
 
 from matstd.artefact.tool import Probe
 from matstd.probe_paths.campaign import VirtualMachine, evaluate
+from matstd.probe_paths.campaign.as_programmed import check_numbers
 from matstd.probe_paths.campaign.virtual_run import run_programs
 from matstd.probe_paths.control import UNDATED, read_log
 from matstd.probe_paths.emit import make_programs
@@ -317,6 +319,15 @@ def test_a_ball_far_off_the_spindle_axis_is_said(lines, small, chain):
     parts = read_log("L", chain.rotary_axes, "\n".join(lines) + "\n")
     off = replace(parts[0], offset=1.0)
     assert "calibrated 1.000 mm off the spindle axis" in evaluate([off], small, chain, U).remarks[0]
+
+
+def test_two_tools_for_one_probe_are_refused_whatever_probe_came_first(lines, chain):
+    (first,) = read_log("L", chain.rotary_axes, "\n".join(lines) + "\n")
+    heading = replace(first.heading, probe=Probe(2.0, 260.0))
+    long = replace(first, heading=heading, tool=31.0, path=Path("M"))
+    check_numbers([first, long])
+    with pytest.raises(BadFile, match=r"TOOL: found 32, where M has 31, expected one tool"):
+        check_numbers([first, long, replace(long, tool=32.0)])
 
 
 def test_another_serial_number_is_refused(lines, small, chain):
