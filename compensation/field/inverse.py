@@ -30,9 +30,13 @@ class Datum:
     q: Array  # readings, (A,)
     length: float  # length of the tool, mm
 
+    def touches(self, errors: MachineErrors) -> Touches:
+        """The pose as a record of one row, in the state of some errors."""
+        return errors.touches(self.q[None, :], self.length)
+
     def deviation(self, errors: MachineErrors) -> Array:
         """Deviation of the tool point there, (3,), mm: the preset has taken it up."""
-        return deviation(errors, errors.touches(self.q[None, :], self.length))[0]
+        return deviation(errors, self.touches(errors))[0]
 
 
 def correction(

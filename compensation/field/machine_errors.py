@@ -102,8 +102,7 @@ class MachineErrors(Displayed):
     def _of_machine(
         cls, chain: Chain, known: Sequence[tuple[Effect, Array]], root: Array, state: State
     ) -> "MachineErrors":
-        middle = np.array([[float(np.mean(chain.link(a).range)) for a in chain.axes]])
-        at = state.touches(chain, middle, 0.0)
+        at = state.touches(chain, chain.travels.mean(axis=1)[None], 0.0)
         _refuse_missing(at, [effect for effect, _ in known])
         counts = [len(theta) for _, theta in known]
         is_kept = [_is_of_machine(effect, at) for effect, _ in known]

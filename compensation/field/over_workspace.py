@@ -80,8 +80,7 @@ class Result:
 
 def relative_columns(errors: MachineErrors, touches: Touches, datum: Datum) -> Array:
     """Deviation of the tool point less that at the datum per unit of every parameter, (N, 3, P)."""
-    there = errors.touches(datum.q[None, :], datum.length)
-    return errors.columns(touches) - errors.columns(there)
+    return errors.columns(touches) - errors.columns(datum.touches(errors))
 
 
 def aligned(points: Array, field: Array) -> Array:
@@ -184,9 +183,8 @@ def contributions(errors: MachineErrors, touches: Touches, datum: Datum) -> tupl
     for name in errors.groups:
         alone = errors.only(name)
         field = deviation(alone, touches) - datum.deviation(alone)
-        there = alone.touches(datum.q[None, :], datum.length)
         some = spread_rows(len(touches), MAX_U_POSES)
-        spread = (alone.columns(touches[some]) - alone.columns(there)) @ alone.root
+        spread = relative_columns(alone, touches[some], datum) @ alone.root
         u = float(np.sqrt(np.einsum("nik,nik->", spread, spread) / len(some)))
         out.append(Share(name, field, u))
     return tuple(sorted(out, key=lambda share: -rms_length(share.field)))

@@ -305,7 +305,7 @@ def _shown(
 ) -> dict[tuple[str, ...], tuple[tuple[str, ...], list[list[float]]]]:
     """Axes that lines name, with their coordinates, mm and degrees, by the axes that are turned."""
     chain = path.errors.chain
-    rotary = [a for a in chain.programmed_axes if chain.link(a).kind == "rotary"]
+    rotary = chain.rotary_axes
     value = dict(zip(chain.axes, at.T, strict=True))
     value |= {a: value[a] / DEG for a in rotary}
     out = {}

@@ -227,8 +227,8 @@ def _step(chain: Chain, link: Link, place: Array, sources: tuple[_Source, ...]) 
 
 def _places(errors: MachineErrors, length: float) -> Array:
     """Displacements of every link's line, which are constant, (L, 6)."""
-    middle = [[float(np.mean(errors.chain.link(a).range)) for a in errors.chain.axes]]
-    return np.asarray(errors.contribution(errors.touches(np.array(middle), length)).place[0])
+    middle = errors.chain.travels.mean(axis=1)[None]
+    return np.asarray(errors.contribution(errors.touches(middle, length)).place[0])
 
 
 def _sources(tables: Sequence[ErrorTable], link: int) -> tuple[_Source, ...]:

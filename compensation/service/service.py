@@ -25,7 +25,7 @@ class Drifts:
     def __init__(self, errors: MachineErrors, datum: Datum) -> None:
         """The laws where the preset is taken."""
         self._errors = errors
-        self._at_datum = errors.touches(datum.q[None, :], datum.length)
+        self._at_datum = datum.touches(errors)
         self._laws = LiveDrift.of(errors.effects, self._at_datum)
         laws = [live.law for live in self._laws]
         is_law = [effect in laws for effect in errors.effects]

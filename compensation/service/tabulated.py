@@ -169,7 +169,7 @@ class ErrorTable:
         """Errors of the links at a grid of readings, (N, L, 6); other axes in their middle."""
         chain, count = self.errors.chain, int(np.prod([len(line) for line in lines]))
         points = np.stack(np.meshgrid(*lines, indexing="ij"), -1) if lines else np.zeros(0)
-        q = np.tile([float(np.mean(chain.link(a).range)) for a in chain.axes], (count, 1))
+        q = np.tile(chain.travels.mean(axis=1), (count, 1))
         q[:, list(self.axes)] = points.reshape(count, len(lines))
         approach = np.zeros_like(q)
         for axis, sign in self.turns.items():

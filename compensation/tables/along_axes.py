@@ -106,7 +106,7 @@ class _Needed:
 
     @cached_property
     def there(self) -> Touches:
-        return self.errors.touches(self.datum.q[None, :], self.datum.length)
+        return self.datum.touches(self.errors)
 
     @cached_property
     def zero(self) -> Array:
@@ -223,7 +223,7 @@ def line_bound(tables: AxisTables, errors: MachineErrors, datum: Datum) -> float
     """What interpolation and rounding leave on the lines through the datum at most, mm."""
     worst: dict[str, float] = {}
     needed = _Needed(errors, datum)
-    lever = np.linalg.norm(errors.touches(datum.q[None, :], datum.length).reach.twist[0], axis=-1)
+    lever = np.linalg.norm(datum.touches(errors).reach.twist[0], axis=-1)
     for table in tables.tables:
         link = errors.chain.link(table.moves)
         unit = lever[errors.chain.link_index(table.moves), link.own_component]
@@ -297,7 +297,7 @@ def _motion(errors: MachineErrors, touches: Touches) -> Array:
 
 def _unit_zero(errors: MachineErrors, datum: Datum) -> Array:
     """Zeros of the linear axes per unit of every parameter, (A, P)."""
-    chain, there = errors.chain, errors.touches(datum.q[None, :], datum.length)
+    chain, there = errors.chain, datum.touches(errors)
     links = [i for i, link in enumerate(chain.links) if link.kind == "linear"]
     moved = errors.columns(there, links)[0]
     out = np.zeros((len(chain.axes), moved.shape[1]))
@@ -308,7 +308,7 @@ def _unit_zero(errors: MachineErrors, datum: Datum) -> Array:
 
 def _unit_needed(errors: MachineErrors, datum: Datum, over: str, nodes: Array) -> Array:
     """`_Needed.along` between both directions per unit of every parameter, (n, A, P)."""
-    chain, there = errors.chain, errors.touches(datum.q[None, :], datum.length)
+    chain, there = errors.chain, datum.touches(errors)
     touches = line(errors, datum, over, nodes)
     out = _unit_rotary(errors, touches) - _unit_rotary(errors, there)
     zero, linear = _unit_zero(errors, datum), chain.linear_columns

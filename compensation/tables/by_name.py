@@ -101,7 +101,7 @@ def sampled(errors: MachineErrors, datum: Datum, most: int) -> NamedTables:
     counts = {a: _points(errors, datum, a, most) for a in chain.programmed_axes}
     nodes = {a: np.linspace(*span(chain.link(a)), n) for a, n in counts.items()}
     values = {a: _twist(errors, datum, a, at) for a, at in nodes.items()}
-    there = errors.contribution(errors.touches(datum.q[None, :], datum.length))
+    there = errors.contribution(datum.touches(errors))
     return NamedTables(chain=chain, nodes=nodes, values=values, place=there.place[0])
 
 
@@ -187,7 +187,7 @@ def unheld_by_name(
 
     To first order: of every component the amount less what is interpolated between its points.
     """
-    chain, there = errors.chain, errors.touches(datum.q[None, :], datum.length)
+    chain, there = errors.chain, datum.touches(errors)
     out = errors.columns(touches)
     if not tables.only_own:
         at_datum = errors.amounts(there, "place", range(len(chain.links)))[0]

@@ -69,7 +69,7 @@ def acceptance(
     q = np.where(is_rotary, datum.q, q)
     candidates = errors.touches(q, datum.length)
     best = int(np.argmax(np.abs(corrects(candidates)).sum(axis=1)))
-    at, there = errors.touches(q[[best]], datum.length), errors.touches(datum.q[None], datum.length)
+    at, there = errors.touches(q[[best]], datum.length), datum.touches(errors)
     shown = []
     for sign in (0.0, 1.0, -1.0):
         moved = deviation_after(errors, at, sign * corrects(at)) - deviation_after(

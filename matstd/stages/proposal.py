@@ -291,7 +291,7 @@ def workspace(
     half = 0.5 * WORKSPACE_OVER_BASE * base
     corners = np.array(list(product((-half, half), (-half, half), (0.0, height))))
     corners = corners @ fixed_xyz(np.array(turn) * DEG).T
-    rotary = [a for a in chain.programmed_axes if chain.link(a).kind == "rotary"]
+    rotary = chain.rotary_axes
     ends = {a: np.clip(chain.link(a).range, -180.0 * DEG, 180.0 * DEG) for a in rotary}
     poses = list(product(*(np.linspace(ends[a][0], ends[a][1], 7) for a in rotary)))
     q = np.zeros((len(poses) * len(corners), len(chain.axes)))

@@ -102,7 +102,7 @@ def _planned_touches(solvers: Sequence[ContactSolver]) -> list[Touches]:
     begin = 0.0
     for solver in solvers:
         times = begin + _step_times(solver)
-        planned.append(solver.touches(times[_rows(solver.program)]))
+        planned.append(solver.touches(times[solver.program.touch_rows]))
         begin = float(times[-1]) + CHANGEOVER
     return planned
 
@@ -112,15 +112,10 @@ def _step_times(contacts: ContactSolver) -> Array:
     return step_times(machine.chain, steps, machine.clock, contacts.travel)
 
 
-def _rows(program: ReadProgram) -> list[int]:
-    """Steps that are touches."""
-    return [i for i, step in enumerate(program.steps) if isinstance(step, ProbeStep)]
-
-
 def _run(contacts: ContactSolver, begin: float) -> VirtualRun:
     """Solve the contacts, then execute the printing of the program."""
     program = contacts.program
-    rows = _rows(program)
+    rows = program.touch_rows
     contacts.solve((begin + _step_times(contacts))[rows])
     contacts.classify()
     times = begin + _step_times(contacts)

@@ -97,3 +97,8 @@ class ReadProgram:
     def touches(self) -> list[ProbeStep]:
         """The touches in order."""
         return [step for step in self.steps if isinstance(step, ProbeStep)]
+
+    @property
+    def touch_rows(self) -> list[int]:
+        """Which of the steps are touches."""
+        return [i for i, step in enumerate(self.steps) if isinstance(step, ProbeStep)]

@@ -8,7 +8,7 @@ import numpy as np
 
 from matstd.artefact.body import Standard
 from matstd.probe_paths.campaign import ContactSolver, VirtualMachine, in_campaign
-from matstd.probe_paths.control import LogPart, ProbeStep, ReadProgram, step_times
+from matstd.probe_paths.control import LogPart, ReadProgram, step_times
 from matstd.probe_paths.plan import ProgramFrame
 from matstd.twin.errors import DesignError
 from matstd.twin.frames import Array
@@ -151,6 +151,5 @@ def _planned(program: ReadProgram, standard: Standard, machine: VirtualMachine) 
     """Touches of a program on a perfect machine, one by one."""
     solver = ContactSolver(program, standard, machine, np.zeros(len(program.touches)))
     times = step_times(machine.chain, program.steps, machine.clock, solver.travel)
-    rows = [i for i, step in enumerate(program.steps) if isinstance(step, ProbeStep)]
-    touches = solver.touches(times[rows])
+    touches = solver.touches(times[program.touch_rows])
     return [touches[i : i + 1] for i in range(len(touches))]

@@ -13,7 +13,7 @@ import numpy as np
 
 from matstd.artefact.body import Standard
 from matstd.artefact.reach import Requests
-from matstd.probe_paths.control import Clock, ProbeStep, step_times
+from matstd.probe_paths.control import Clock, step_times
 from matstd.probe_paths.emit import Feeds, make_programs
 from matstd.probe_paths.plan import (
     LINEAR,
@@ -106,7 +106,7 @@ def _timed(plan: TouchPlan) -> tuple[Touches, float]:
     read = programs.programs[0].read
     travel = np.full(len(read.touches), plan.options.standoff)
     clock = step_times(plan.chain, read.steps, Clock(), travel)
-    time = clock[[isinstance(step, ProbeStep) for step in read.steps]]
+    time = clock[read.touch_rows]
     side = np.array([touch.side for touch in read.touches])
     return _record(plan, time, side), float(clock[-1])
 
