@@ -76,7 +76,7 @@ def find_standard(
     ball_table: Array,
     radius: float,
     rng: np.random.Generator,
-    spread: Spread | None = None,
+    spread: Spread,
 ) -> Found:
     """Place of a standard from balls that came down on it.
 
@@ -87,7 +87,6 @@ def find_standard(
     Raises:
         NotEnoughData: Fewer than nine touches, no place that fits, or two that fit alike.
     """
-    spread = spread or Spread()
     if len(ball_table) < 9:
         raise NotEnoughData(f"{len(ball_table)} touches of a search, expected at least 9")
     ball = apply(inverse(believed.T_table_artefact), ball_table)

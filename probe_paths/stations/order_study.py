@@ -165,13 +165,13 @@ def probing_time(
     probe: Probe,
     setup: Setup,
     requests: Requests,
-    options: PlanOptions | None = None,
+    options: PlanOptions,
 ) -> float:
     """Time on the machine of a plan of the same care, s; nan where no plan can be made.
 
     Touches that this plan refuses are counted as if they took as long as the others.
     """
-    options = replace(options or PlanOptions(), tolerated=len(requests), is_swept=False)
+    options = replace(options, tolerated=len(requests), is_swept=False)
     try:
         plan = plan_touches(body, chain, probe, setup, requests, options)
     except NotReachable:
