@@ -124,6 +124,6 @@ def table_lines(played: VerifiedTables) -> Iterator[tuple[str, bool]]:
         words = few([held_words(left) for left in held], MAX_NAMED_ERRORS)
         yield f"- cannot represent, rms over the workspace: {words}", False
         if grown := grown_sentence(held):
-            yield f\"- {grown}\", False
+            yield f"- {grown}", False
     elif not played.left_out:
         yield "- represents every error of the model", False
