@@ -1,7 +1,6 @@
 """The sensitivity page: every map once and in order, regions in words, 3-D scenes of the study."""
 
 import re
-from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -23,28 +22,16 @@ from matstd.report.words import sampling_words
 from matstd.sensitivity.first_order import Workspace
 from matstd.sensitivity.population import Population
 from matstd.sensitivity.study import run_study
-from matstd.twin.files import read_machine
 from matstd.twin.frames import apply
 from matstd.twin.machine import tip
 from matstd.twin.units import DEG, UM
 
 NM = 1e-6  # mm
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
-
 
 @pytest.fixture(scope="module")
-def study():
-    chain = read_machine(EXAMPLES / "hsm600u-machine.toml")
-    limits = {
-        "X": (-150.0, 150.0),
-        "Y": (-120.0, 120.0),
-        "Z": (-400.0, -150.0),
-        "B": (-90.0 * DEG, 20.0 * DEG),
-        "C": (-180.0 * DEG, 180.0 * DEG),
-    }
-    area = Workspace(chain, limits, 160.0)
-    return run_study(Population(chain), area, 100, 100, np.random.default_rng(5))
+def study(chain, workspace):
+    return run_study(Population(chain), workspace, 100, 100, np.random.default_rng(5))
 
 
 def test_error_scenes_show_level_and_worst_table_with_the_standard_in_its_place(study):

@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 
 from matstd.twin.errors import BadFile
-from matstd.twin.files import read_machine, read_sensors
-from matstd.twin.machine import Chain
+from matstd.twin.files import read_sensors
 from matstd.twin.record import Run, at_poses
 
 BEGIN = datetime(2031, 5, 6, 23, 59, 0)
@@ -17,11 +16,6 @@ TEXT = """clock,T_ram_degC,T_room_degC
 2031-05-07T00:00:00,24.0,20.5
 2031-05-07T00:10:00,25.0,20.5
 """
-
-
-@pytest.fixture
-def chain() -> Chain:
-    return read_machine("examples/hsm600u-machine.toml")
 
 
 @pytest.fixture

@@ -1,21 +1,11 @@
 """Effects with sizes as users write them: units by hand, and what is refused."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
 from matstd.twin.errors import DesignError
-from matstd.twin.files import read_machine
 from matstd.twin.library import parse_sized_effect, parse_sizes
 from matstd.twin.units import DEG
-
-EXAMPLES = Path(__file__).parents[2] / "examples"
-
-
-@pytest.fixture(scope="module")
-def chain():
-    return read_machine(EXAMPLES / "hsm600u-machine.toml")
 
 
 @pytest.mark.parametrize(
