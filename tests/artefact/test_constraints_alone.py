@@ -200,13 +200,6 @@ def test_what_is_against_a_touch(standard, chain, feature, uv, c_b, what, reason
 
 
 OPTIONS = PlacementOptions(name="trial", sites=60, choice=TouchOptions(touches=160, poses=12))
-LIMITS_OF_USER = {
-    "X": (-150.0, 150.0),
-    "Y": (-150.0, 150.0),
-    "Z": (-400.0, -150.0),
-    "B": (-90.0 * DEG, 20.0 * DEG),
-    "C": (-180.0 * DEG, 180.0 * DEG),
-}
 
 
 @pytest.mark.parametrize(
@@ -228,19 +221,20 @@ LIMITS_OF_USER = {
         (Limits(), {"length": 900.0}, NotReachable, "every axis within its limits"),
     ],
 )
-def test_contradictory_limits_are_refused_with_the_one_that_binds(chain, limits, what, kind, line):
+def test_contradictory_limits_are_refused_with_the_one_that_binds(
+    chain, workspace, limits, what, kind, line
+):
     reach = replace(ProbeReach(chain, Setup("a"), PROBE, 160.0), **what)
-    workspace = Workspace(chain, LIMITS_OF_USER, 160.0)
     brief = brief_of(reach, workspace, OPTIONS, Blank(limits=limits))
     with pytest.raises(kind, match=line) as caught:
         design_standard(brief, np.random.default_rng(1))
     assert "\n" not in str(caught.value)
 
 
-def test_a_workspace_out_of_reach_is_refused(chain):
+def test_a_workspace_out_of_reach_is_refused(chain, workspace):
     with pytest.raises(OutsideTravel, match="workspace of X: 500 to 600, beyond the travel -400"):
-        Workspace(chain, {**LIMITS_OF_USER, "X": (500.0, 600.0)}, 160.0)
-    narrow = Workspace(chain, {**LIMITS_OF_USER, "B": (-109.0 * DEG, -108.0 * DEG)}, 160.0)
+        Workspace(chain, workspace.limits | {"X": (500.0, 600.0)}, 160.0)
+    narrow = Workspace(chain, workspace.limits | {"B": (-109.0 * DEG, -108.0 * DEG)}, 160.0)
     reach = ProbeReach(chain, Setup("a"), PROBE, 160.0)
     with pytest.raises(NotReachable, match="leave no room: they are approached"):
         design_standard(brief_of(reach, narrow, OPTIONS), np.random.default_rng(1))
