@@ -4,8 +4,8 @@ import re
 from pathlib import Path
 
 import pytest
+from briefs import project_with
 
-from matstd.api.machines import machine_file
 from matstd.artefact.brief import read_project
 from matstd.artefact.brief.contradictions import Faults, body_faults, material_faults
 from matstd.artefact.brief.material_table import MaterialTable
@@ -65,25 +65,17 @@ def test_a_material_without_data_names_those_that_have_some() -> None:
     assert re.search(r"material\.density_kg_m3: .*'ceramic'.*alumina, zirconia", density)
 
 
-def project(tmp_path: Path, text: str) -> Path:
-    """A project on a machine of the tool, with more keys."""
-    path = tmp_path / "project.toml"
-    head = f'format = "project/1"\nmachine = "{machine_file("hsm600u").as_posix()}"\nseed = 1\n'
-    path.write_text(head + "probe = { radius_mm = 3.0, length_mm = 160.0 }\n" + text, "utf-8")
-    return path
-
-
 def test_as_few_touches_as_allowed_are_taken(tmp_path):
     text = "[standard]\nposes = 10\ntouches = {}\n"
-    assert read_project(project(tmp_path, text.format(100))).options.choice.touches == 100
+    assert read_project(project_with(tmp_path, text.format(100))).options.choice.touches == 100
     with pytest.raises(BadFile, match=r"standard\.touches: found 99, expected .*100"):
-        read_project(project(tmp_path, text.format(99)))
+        read_project(project_with(tmp_path, text.format(99)))
 
 
 def test_all_limits_are_named_at_once_with_the_keys_of_the_file(tmp_path):
     text = "[workshop.table]\ndiameter_mm = 40.0\n[blank]\nbase_mm = [30.0, 30.0]\n"
     with pytest.raises(BadFile) as caught:
-        read_project(project(tmp_path, text + "[standard]\nposes = 100\ntouches = 110\n"))
+        read_project(project_with(tmp_path, text + "[standard]\nposes = 100\ntouches = 110\n"))
     message = str(caught.value)
     assert "3 faults: standard.poses: found 100 with touches = 110" in message
     assert "workshop.table.diameter_mm: found a table of 40 mm" in message
@@ -94,7 +86,7 @@ def test_all_limits_are_named_at_once_with_the_keys_of_the_file(tmp_path):
 
 def test_a_renamed_key_is_refused_by_the_name_that_was_written(tmp_path):
     with pytest.raises(BadFile, match=r"standard\.density_kg_m3: found 7\.8, expected a number fr"):
-        read_project(project(tmp_path, "[standard]\ndensity_kg_m3 = 7.8\n"))
+        read_project(project_with(tmp_path, "[standard]\ndensity_kg_m3 = 7.8\n"))
 
 
 @pytest.mark.parametrize(
@@ -106,13 +98,13 @@ def test_a_renamed_key_is_refused_by_the_name_that_was_written(tmp_path):
 )
 def test_a_workspace_in_other_units_is_refused(tmp_path, workspace, words):
     with pytest.raises(BadFile, match=words):
-        read_project(project(tmp_path, f"[workspace]\n{workspace}\n"))
+        read_project(project_with(tmp_path, f"[workspace]\n{workspace}\n"))
 
 
 @pytest.mark.parametrize("poses", ["99", "100001", "500.0"])
 def test_poses_beyond_what_a_study_takes_are_refused(tmp_path, poses):
     with pytest.raises(BadFile, match=rf"workspace\.poses: found {poses}, expected a whole number"):
-        read_project(project(tmp_path, f"[workspace]\nposes = {poses}\n"))
+        read_project(project_with(tmp_path, f"[workspace]\nposes = {poses}\n"))
 
 
 @pytest.mark.parametrize(
@@ -120,7 +112,7 @@ def test_poses_beyond_what_a_study_takes_are_refused(tmp_path, poses):
     ["X = [0.0, 0.0]", "B = [-1.5, 0.5]", "X = [-5.0, 5.0]", "poses = 100", "poses = 100000"],
 )
 def test_a_narrow_workspace_is_read(tmp_path, workspace):
-    read_project(project(tmp_path, f"[workspace]\n{workspace}\n"))
+    read_project(project_with(tmp_path, f"[workspace]\n{workspace}\n"))
 
 
 @pytest.mark.parametrize(
@@ -135,4 +127,4 @@ def test_a_narrow_workspace_is_read(tmp_path, workspace):
 )
 def test_figures_of_a_material_in_other_units_are_refused(tmp_path, material, words):
     with pytest.raises(BadFile, match=words):
-        read_project(project(tmp_path, f"[material]\n{material}\n"))
+        read_project(project_with(tmp_path, f"[material]\n{material}\n"))

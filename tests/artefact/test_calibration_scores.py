@@ -1,7 +1,6 @@
 """Calibrations of pieces with known truth: errors over stated uncertainties; waves and scrap."""
 
 import tomllib
-from dataclasses import replace
 from pathlib import Path
 
 import cmm_sets
@@ -9,23 +8,10 @@ import numpy as np
 import pytest
 
 from matstd.api.standards import calibrate
-from matstd.artefact.body import DatumSphere, read_standard, write_standard
+from matstd.artefact.body import read_standard
 from matstd.artefact.certify.waviness import dense_lines
 from matstd.twin.errors import BadFile
 from matstd.twin.units import UM
-
-MORE = ((-60.0, -30.0, 58.0), (62.0, 45.0, 66.0), (-5.0, 60.0, 75.0), (40.0, -55.0, 50.0))
-
-
-@pytest.fixture
-def drawn(upright, tmp_path) -> Path:
-    ball = upright.spheres[0]
-    added = [
-        DatumSphere(f"SPH{i}", np.array(c), ball.radius, ball.stem_radius, 12.0, ball.foot)
-        for i, c in enumerate(MORE, 4)
-    ]
-    write_standard(tmp_path / "standard.toml", replace(upright, spheres=(*upright.spheres, *added)))
-    return tmp_path / "standard.toml"
 
 
 def calibrated(drawn: Path, rows, **stated):

@@ -14,36 +14,14 @@ import pytest
 from scipy.interpolate import BSpline
 from scipy.spatial.transform import Rotation
 
-from matstd.artefact.body import DatumSphere, Known, Verdict, read_standard, write_standard
+from matstd.artefact.body import Known, Verdict, read_standard
 from matstd.cli import main
 from matstd.twin.units import UM
-
-PLACES = ((-50.0, 35.0, 62.0), (5.0, -45.0, 70.0), (60.0, -10.0, 55.0))
-MORE = ((-60.0, -30.0, 58.0), (62.0, 45.0, 66.0), (-5.0, 60.0, 75.0), (40.0, -55.0, 50.0))
-"""Of the balls: a frame of seven, of which no two have like distances from the others."""
 
 NOISE = 0.2 * UM
 
 SCATTER = {f"SPH{k}": off * UM for k, off in enumerate((1.1, -1.0, 0.2, -0.6, 0.0, 1.0, -0.9), 1)}
 """Of the radii of bought balls, within the 1.25 µm of the drawing."""
-
-
-@pytest.fixture(scope="module")
-def nominal(upright):
-    """The upright standard of the fixtures with four balls more."""
-    ball = upright.spheres[0]
-    added = [
-        DatumSphere(f"SPH{i}", np.array(c), ball.radius, ball.stem_radius, 12.0, ball.foot)
-        for i, c in enumerate(MORE, 4)
-    ]
-    return replace(upright, spheres=(*upright.spheres, *added))
-
-
-@pytest.fixture
-def drawn(nominal, tmp_path) -> Path:
-    path = tmp_path / "standard.toml"
-    write_standard(path, nominal)
-    return path
 
 
 def on_face(face: dict, count: int, rng, out: float) -> np.ndarray:
@@ -110,7 +88,7 @@ def by_name(path: Path) -> dict[str, Verdict]:
     return {f"{v.feature} {v.characteristic}": v for v in known.verdicts}
 
 
-def test_a_piece_as_drawn_conforms(nominal, drawn, capsys):
+def test_a_piece_as_drawn_conforms(seven_balls, drawn, capsys):
     code, out = calibrate(drawn, measured(drawn))
     assert code == 0
     found = by_name(out)
@@ -165,7 +143,9 @@ def test_a_piece_as_drawn_conforms(nominal, drawn, capsys):
         ({"scale": -20e-6}, "ppm too short .* or a piece at 18.1 °C; let the CMM compensate"),
     ],
 )
-def test_a_fault_is_refused_and_named_and_can_be_accepted(nominal, drawn, capsys, fault, expected):
+def test_a_fault_is_refused_and_named_and_can_be_accepted(
+    seven_balls, drawn, capsys, fault, expected
+):
     points = measured(drawn, **fault)
     code, out = calibrate(drawn, points)
     assert code == 2
@@ -259,11 +239,11 @@ def test_the_guard_band_by_hand(deviation, u, state):
     assert Verdict("FF1", "profile", deviation, 25.0, u=u).state == state
 
 
-def test_a_standard_repeats_what_was_accepted(nominal):
+def test_a_standard_repeats_what_was_accepted(seven_balls):
     refused = Verdict("FF2", "profile", 0.37, 0.025, u=0.001)
     good = Verdict("FF1", "profile", 0.007, 0.025, u=0.001)
-    known = Known("cmm.csv", nominal.fingerprint, {}, (good, refused), u_scale=0.0)
-    assert replace(nominal, known=known).remarks == (
+    known = Known("cmm.csv", seven_balls.fingerprint, {}, (good, refused), u_scale=0.0)
+    assert replace(seven_balls, known=known).remarks == (
         "calibration of 'small' accepted although not conforming: FF2 profile",
     )
-    assert nominal.remarks == ()
+    assert seven_balls.remarks == ()

@@ -1,10 +1,10 @@
 """A calibrated ball on the table beside the standard: kept clear of, touched by one program."""
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
+from briefs import project_with
 from programs import as_read, left_log
 
 from matstd.artefact.brief import read_project
@@ -21,7 +21,6 @@ from matstd.twin.frames import pose, rotation
 from matstd.twin.units import NM, UM
 
 BALL = DatumBall(x=118.0, y=20.0, z=70.0, radius=12.5, stem=5.0, low=0.0, u=0.25 * UM)
-EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
 @pytest.fixture(scope="module")
@@ -130,20 +129,10 @@ def test_a_tilted_standard_has_no_such_ball():
 )
 def test_a_ball_that_cannot_be_is_one_line(keys, reason, tmp_path):
     with pytest.raises(BadFile, match=reason):
-        read_project(_project(tmp_path, keys))
+        read_project(project_with(tmp_path, f"[workshop.ball]\n{keys}\n"))
 
 
 def test_the_ball_of_a_project_stands_in_the_workshop(tmp_path):
     keys = "at_mm = [118.0, 20.0, 70.0]\ndiameter_mm = 25.0\nstem_diameter_mm = 10.0"
-    assert read_project(_project(tmp_path, keys)).reach.workshop.ball == BALL
-
-
-def _project(folder, keys):
-    path = folder / "project.toml"
-    machine = EXAMPLES / "hsm600u-machine.toml"
-    path.write_text(
-        f'format = "project/1"\nmachine = "{machine}"\nseed = 1\n'
-        f"[probe]\nradius_mm = 3.0\nlength_mm = 160.0\n[workshop.ball]\n{keys}\n",
-        encoding="utf-8",
-    )
-    return path
+    project = read_project(project_with(tmp_path, f"[workshop.ball]\n{keys}\n"))
+    assert project.reach.workshop.ball == BALL

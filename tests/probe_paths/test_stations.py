@@ -2,11 +2,11 @@
 
 import re
 from dataclasses import replace
-from pathlib import Path
 
 import make_programs as golden
 import numpy as np
 import pytest
+from briefs import project_with
 from scipy.spatial.transform import Rotation
 
 from matstd.api.replanning import by_probe, of_one_setup
@@ -29,7 +29,7 @@ from matstd.twin.frames import pose, rotation
 from matstd.twin.model import Model
 from matstd.twin.record import Setup
 
-EXAMPLE = Path(__file__).parents[2] / "examples" / "hsm600u.toml"
+TOOL_12 = "[workshop]\ntool = 12\n[setup.a]\norigin_mm = [0.0, 0.0, 0.0]\n"
 WIDE = Probe(stack=((40.0, 1.5), (160.0, 31.0)), nose_radius=50.0)
 SLIM = Probe(radius=2.0, length=200.0, stack=((80.0, 1.4), (200.0, 20.0)))
 TURNED = Setup("b", pose(rotation(np.array([0.0, 0.0, np.pi / 2])), np.array([-10.0, 5.0, 0.0])))
@@ -223,7 +223,7 @@ def test_a_standard_is_planned_again_in_the_set_up_of_the_log(texts, small):
     ],
 )  # fmt: skip
 def test_probes_and_set_ups_that_contradict_are_one_line(addition, reason, tmp_path):
-    path = _project(tmp_path, addition)
+    path = project_with(tmp_path, TOOL_12 + addition)
     with pytest.raises(BadFile, match=reason):
         read_project(path)
 
@@ -233,26 +233,7 @@ def test_a_project_states_further_probes_and_set_ups(tmp_path):
         '[[workshop.probes]]\ntool = 31\nmodel = "om-63x76"\n'
         "[setup.b]\nrotation_deg = [0.0, 0.0, 90.0]"
     )
-    project = read_project(_project(tmp_path, addition))
+    project = read_project(project_with(tmp_path, TOOL_12 + addition))
     assert [setup.name for setup in project.setups] == ["a", "b"]
     assert project.programs.further_tools == (31,)
     assert len(project.probes) == 2
-
-
-def _project(folder, addition):
-    machine = (EXAMPLE.parent / "hsm600u-machine.toml").as_posix()
-    text = f"""format = "project/1"
-machine = "{machine}"
-seed = 1
-[probe]
-radius_mm = 3.0
-length_mm = 160.0
-[workshop]
-tool = 12
-[setup.a]
-origin_mm = [0.0, 0.0, 0.0]
-{addition}
-"""
-    path = folder / "project.toml"
-    path.write_text(text, encoding="utf-8")
-    return path

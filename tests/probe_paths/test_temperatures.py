@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from briefs import project_with
 from programs import as_read, ran
 
 from matstd.artefact.brief import read_project
@@ -109,23 +110,13 @@ def test_a_sensor_that_the_head_does_not_state_is_refused(change, reason, made, 
     ],
 )  # fmt: skip
 def test_sensors_that_cannot_be_read_are_one_line(control, keys, reason, tmp_path):
+    text = f'control = "{control}"\n[workshop.temperatures]\n{keys}\n'
     with pytest.raises(BadFile, match=reason):
-        dialects_of(read_project(_project(tmp_path, control, keys)))
+        dialects_of(read_project(project_with(tmp_path, text)))
 
 
 def test_sensors_of_a_project_reach_the_words(tmp_path):
-    keys = "bed = { parameter = 103, factor = 0.1, offset = -5.0 }"
-    (words,) = dialects_of(read_project(_project(tmp_path, "tnc640", keys)))
+    keys = 'control = "tnc640"\n[workshop.temperatures]\n'
+    keys += "bed = { parameter = 103, factor = 0.1, offset = -5.0 }\n"
+    (words,) = dialects_of(read_project(project_with(tmp_path, keys)))
     assert words.sensors == SENSORS[1:]
-
-
-def _project(folder, control, keys):
-    path = folder / "project.toml"
-    path.write_text(
-        f'format = "project/1"\nseed = 1\n'
-        f'machine = "{ROOT / "examples" / "hsm600u-machine.toml"}"\n'
-        f'control = "{control}"\n[probe]\nradius_mm = 3.0\nlength_mm = 160.0\n'
-        f"[workshop.temperatures]\n{keys}\n",
-        encoding="utf-8",
-    )
-    return path
