@@ -46,44 +46,35 @@ def bare(text: str) -> list[str]:
     return [re.sub(r"^\d+ ", "", line) for line in text.splitlines()]
 
 
-def swap(old: str, new: str, nth: int = 0) -> Change:
-    """Replace text in the nth line that has it."""
+def instead(has: Callable[[str], object], nth: int, made: Callable[[str], list[str]]) -> Change:
+    """Other lines in place of the nth that has something."""
 
     def change(lines: list[str]) -> list[str]:
-        at = [i for i, line in enumerate(lines) if old in line][nth]
-        return [*lines[:at], lines[at].replace(old, new, 1), *lines[at + 1 :]]
+        at = [i for i, line in enumerate(lines) if has(line)][nth]
+        return [*lines[:at], *made(lines[at]), *lines[at + 1 :]]
 
     return change
+
+
+def swap(old: str, new: str, nth: int = 0) -> Change:
+    """Replace text in the nth line that has it."""
+    return instead(lambda line: old in line, nth, lambda line: [line.replace(old, new, 1)])
 
 
 def drop(old: str, nth: int = 0) -> Change:
     """Delete the nth line that has some text."""
-
-    def change(lines: list[str]) -> list[str]:
-        at = [i for i, line in enumerate(lines) if old in line][nth]
-        return [*lines[:at], *lines[at + 1 :]]
-
-    return change
+    return instead(lambda line: old in line, nth, lambda _: [])
 
 
 def insert(new: str, before: str, nth: int = 0) -> Change:
     """A further block before the nth line that has some text."""
-
-    def change(lines: list[str]) -> list[str]:
-        at = [i for i, line in enumerate(lines) if before in line][nth]
-        return [*lines[:at], new, *lines[at:]]
-
-    return change
+    return instead(lambda line: before in line, nth, lambda line: [new, line])
 
 
 def edit(pattern: str, new: str, nth: int = 0) -> Change:
     """Replace a pattern in the nth line that matches it."""
-
-    def change(lines: list[str]) -> list[str]:
-        at = [i for i, line in enumerate(lines) if re.search(pattern, line)][nth]
-        return [*lines[:at], re.sub(pattern, new, lines[at], count=1), *lines[at + 1 :]]
-
-    return change
+    wanted = re.compile(pattern)
+    return instead(wanted.search, nth, lambda line: [wanted.sub(new, line, count=1)])
 
 
 def both(first: Change, then: Change) -> Change:

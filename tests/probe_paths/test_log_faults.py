@@ -61,6 +61,14 @@ def edited(index, old, new):
     return change
 
 
+def at_hour(hour, first):
+    """Eight o'clock is another hour from a line on."""
+    return lambda lines: [
+        *lines[:first],
+        *(s.replace("T  8:", f"T  {hour}:") for s in lines[first:]),
+    ]
+
+
 def again(number, to):
     """The lines of a touch a second time, behind touch `to`."""
 
@@ -156,16 +164,12 @@ FAULTS = {
     "offsets garbled": (instead(12, "EX   0.0"), set(), "it is left out"),
     "hour 25": (edited(touch_line(8, 4), "T  8:", "T 25:"), {8}, "touch that begins"),
     "the clock an hour back": (
-        lambda lines: [
-            re.sub(r"T  8:", "T  7:", s) if i >= touch_line(12) else s for i, s in enumerate(lines)
-        ],
+        at_hour(7, touch_line(12)),
         set(),
         "the clock goes back by 60 min|the clock goes back by 59 min",
     ),
     "summer time begins": (
-        lambda lines: [
-            re.sub(r"T  8:", "T  9:", s) if i >= touch_line(12) else s for i, s in enumerate(lines)
-        ],
+        at_hour(9, touch_line(12)),
         set(),
         "summer time",
     ),
