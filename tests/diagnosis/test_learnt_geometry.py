@@ -44,12 +44,16 @@ def learnt(case):
     run = case(*KEY).run
     t = run.touches
 
-    def made(chain=None, scale=None):
-        moved = np.zeros(len(run))
-        if chain is not None or scale is not None:
-            moved = displaced(t, chain or t.chain, t.q if scale is None else t.q * scale)
+    def of(moved):
         fit = fit_run(replace(run, deviation=run.deviation - moved), ordinary_model(t.chain))
         return fit, {r.symbol: r for r in geometry_rows(fit)}
+
+    as_simulated = of(0.0)
+
+    def made(chain=None, scale=None):
+        if chain is None and scale is None:
+            return as_simulated
+        return of(displaced(t, chain or t.chain, t.q if scale is None else t.q * scale))
 
     return made
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -25,6 +26,7 @@ def probed(programs, small, chain, tmp_path_factory) -> Callable[[float], tuple[
     paths = [p for p in programs.write(folder) if p.suffix == ".H"]
     errors = drawn_errors(Population(chain), np.random.default_rng(7))
 
+    @cache
     def probe(noise: float) -> tuple[Run, Array]:
         machine = VirtualMachine(chain, lambda touches: contribution(errors, touches), noise=noise)
         campaign = simulate(paths, small, machine, np.random.default_rng(0))
