@@ -81,6 +81,18 @@ def logs(texts, small, machines):
     return parts
 
 
+@pytest.fixture(scope="module")
+def parts(texts, small):
+    """Of a machine without errors."""
+    return logs(texts, small, [VirtualMachine(golden.machine())] * 3)
+
+
+@pytest.fixture(scope="module")
+def seen(parts, small):
+    """Their run."""
+    return evaluate(parts, small, golden.machine(), 1e-3)
+
+
 def test_every_touch_is_made_by_the_first_probe_that_can(plans, small, wanted):
     (first, wide), (second, slim) = plans[:2]
     assert (first, second) == (0, 1)
@@ -126,19 +138,17 @@ def test_programs_name_their_tool_and_stand_in_order(stations, texts):
     }
 
 
-def test_logs_of_all_stations_are_one_run(texts, small, tmp_path):
-    machine = VirtualMachine(golden.machine())
-    run = evaluate(logs(texts, small, [machine] * 3), small, machine.chain, 1e-3)
-    touches = run.touches
+def test_logs_of_all_stations_are_one_run(seen, tmp_path):
+    touches = seen.touches
     assert [setup.name for setup in touches.setups] == ["a", "b"]
     assert sorted(set(touches.length.tolist())) == pytest.approx([160.0, 200.0])
     assert sorted(set(touches.radius.tolist())) == pytest.approx([2.0, 3.0])
-    assert np.abs(run.deviation).max() < 1e-5
+    assert np.abs(seen.deviation).max() < 1e-5
     # a pose of one probe is none of the other
     with_slim = touches.length > 180.0
     assert not set(touches.pose[with_slim]) & set(touches.pose[~with_slim])
-    write_run(tmp_path / "run.csv", run, "machine.toml")
-    again = read_run(tmp_path / "run.csv", machine.chain)
+    write_run(tmp_path / "run.csv", seen, "machine.toml")
+    again = read_run(tmp_path / "run.csv", golden.machine())
     assert again.touches.radius == pytest.approx(touches.radius, abs=1e-6)
     assert again.touches.length == pytest.approx(touches.length, abs=1e-6)
 
@@ -164,13 +174,12 @@ def test_a_stylus_calibrated_wrongly_is_identified(texts, small):
     assert abs(float(z[1]) + 20.0) < 4.0 * float(z[2])
 
 
-def test_a_stylus_error_is_what_a_displaced_ball_does(texts, small):
+def test_a_stylus_error_is_what_a_displaced_ball_does(seen):
     """Signs by kinematics written here: tool turned against the table by B, then C."""
-    machine = VirtualMachine(golden.machine())
-    touches = evaluate(logs(texts, small, [machine] * 3), small, machine.chain, 1e-3).touches
+    touches = seen.touches
     (stylus,) = [free for free in setup_errors(touches) if free.kind == "stylus"]
     e, r = np.array([0.004, -0.003, 0.005]), 0.002
-    columns = Model(machine.chain, (stylus,)).columns(touches)
+    columns = Model(golden.machine(), (stylus,)).columns(touches)
     rows = np.flatnonzero(touches.length > 180.0)
     assert np.all(columns[touches.length < 180.0] == 0.0)
     for row in rows:
@@ -181,12 +190,10 @@ def test_a_stylus_error_is_what_a_displaced_ball_does(texts, small):
         assert columns[row] @ [*e, r] == pytest.approx(expected, abs=1e-9)
 
 
-def test_one_probe_with_two_calibrations_is_refused(texts, small):
-    machine = VirtualMachine(golden.machine())
-    parts = logs(texts, small, [machine] * 3)
-    parts[-1] = replace(parts[-1], tool_length=parts[-1].tool_length + 0.01)
+def test_one_probe_with_two_calibrations_is_refused(parts, small):
+    other = replace(parts[-1], tool_length=parts[-1].tool_length + 0.01)
     with pytest.raises(BadFile, match="one calibration a probe"):
-        evaluate(parts, small, machine.chain, 1e-3)
+        evaluate([*parts[:-1], other], small, golden.machine(), 1e-3)
 
 
 def test_what_no_probe_reaches_is_refused_by_the_first_one(small, wanted):
@@ -201,9 +208,7 @@ def test_a_clamping_without_a_touch_is_refused(small, wanted):
         _in_other_clamping(small, golden.machine(), [WIDE], far, wanted)
 
 
-def test_a_standard_is_planned_again_in_the_set_up_of_the_log(texts, small):
-    machine = VirtualMachine(golden.machine())
-    parts = logs(texts, small, [machine] * 3)
+def test_a_standard_is_planned_again_in_the_set_up_of_the_log(texts, parts):
     here, others = of_one_setup(texts, parts[:2])
     assert ([p.name for p in here], others) == (["MS_A_1", "MS31_A_1"], ["b"])
     with pytest.raises(DesignError, match="logs of set-up a, b, expected those of one"):
