@@ -52,6 +52,7 @@ IMPOSSIBLE: dict[str, dict[str, Any]] = {
     "a kilogram at most": {"p.limits.max_mass_kg": 1.0},
     "table of nothing": {"p.limits.table_radius_mm": 0.0},
     "table smaller than the base": {"p.limits.table_radius_mm": 90.0},
+    "corners over a round table": {"p.limits.overhang_mm": 0.0},
     "slots every 5 mm": {"p.limits.slot_pitch_mm": 5.0},
     "overhang below zero": {"p.limits.overhang_mm": -10.0},
     "riser below zero": {"p.limits.riser_mm": -20.0},
@@ -101,6 +102,11 @@ IMPOSSIBLE: dict[str, dict[str, Any]] = {
     "machine: travel in micrometres": {"m.axis.Y.range": [-300000.0, 300000.0]},
     "machine: B turns about Z": {"m.axis.B.direction": [0.0, 0.0, 1.0]},
     "machine: table in metres": {"m.workpiece.origin": [0.0, 0.0, -0.5]},
+    "machine: X in centimetres": {"m.axis.X.range": [-40.0, 40.0]},
+    "machine: Z in centimetres": {"m.axis.Z.range": [-50.0, 0.0]},
+    "machine: table 60 mm off the line of C": {"m.workpiece.origin": [60.0, 0.0, -500.0]},
+    "machine: table a metre low": {"m.workpiece.origin": [0.0, 0.0, -1500.0]},
+    "probe in inches": {"p.probe.length_mm": 6.3},
     "a post of a metre": {
         "p.workshop.bodies": [
             {"name": "P", "at_mm": [200.0, 0.0, 0.0], "diameter_mm": 20.0, "height_mm": 1000.0}

@@ -78,6 +78,7 @@ def project(seed: int) -> str:
         "gap_mm": round(float(rng.uniform(0.5, 3.0)), 2),
         "max_mass_kg": round(float(rng.uniform(5.0, 200.0)), 1),
         "table_radius_mm": round(float(rng.uniform(0.5, 1.0) * side), 1),
+        "overhang_mm": round(0.3 * side, 1),  # of the corners of a square over a disc of its side
     }
     return text_of(table) + "\n"
 

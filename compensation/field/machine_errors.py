@@ -255,6 +255,8 @@ class MachineErrors(Displayed):
         Raises:
             BadValue: A word that is none of these here, with those that are.
         """
+        if not factors:
+            return self
         known = {word for effect in self.effects for word in words_of(self.chain, effect)}
         for word in factors:
             if word not in known:

@@ -122,7 +122,7 @@ def table_lines(played: VerifiedTables) -> Iterator[tuple[str, bool]]:
     held = [left for left in played.result.left if left.rms > max(played.interpolation, 10 * NM)]
     if held:
         words = few([held_words(left) for left in held], MAX_NAMED_ERRORS)
-        yield f"- cannot represent, rms over the workspace: {words}", False
+        yield f"- cannot represent, rms over the workspace, each by itself: {words}", False
         if grown := grown_sentence(held):
             yield f"- {grown}", False
     elif not played.left_out:

@@ -117,7 +117,10 @@ def _control(played: VerifiedTables, chain: Chain) -> list[Section]:
         caption = "Each error by itself: before, and what remains with the table."
         drawn = draw_shares(result.left)
         pictures.append(Picture(f"{PICTURES}/{played.format}.png", caption, drawn))
-    caption = "Errors that this format cannot represent, µm rms over the workspace, each by itself"
+    caption = (
+        "Errors that this format cannot represent, µm rms over the workspace, each by itself; "
+        "together they partly offset each other"
+    )
     words = (
         f"{result_sentence(result)}. Interpolation and rounding leave at most "
         f"{small(played.interpolation / UM, 2)} µm {extent_of(played)}. "

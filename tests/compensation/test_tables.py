@@ -434,6 +434,9 @@ def test_a_remaining_location_error_has_the_size_that_its_run_determines(bench_c
     rows = errors.parameter_rows("EX0C")
     assert _as_determined(left, errors, rows) is left
     known = replace(errors, determined={"EX0C": Estimate(-29.4 * UM, 0.6 * UM)})
+    # errors that are not switched keep what their run determines; others are no longer those of it
+    assert known.switched({}).determined == known.determined
+    assert known.switched({"EX0C": 0.5}).determined == {}
     found = _as_determined(left, known, rows)
     # 20 of 21 µm at the tool after alignment, of which half remains
     np.testing.assert_allclose(found.before, 28.0 * UM)
