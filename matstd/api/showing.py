@@ -45,9 +45,8 @@ from matstd.twin.files import read_any_text, read_errors, refuse_to_overwrite, w
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain, Family, Ranges
 from matstd.twin.model import Effect
-from matstd.twin.units import HOUR
+from matstd.twin.units import HOUR, USUAL_TOOL_LENGTH
 
-DRAWN_TOOL_LENGTH = 150.0  # of the tool that is drawn unless another is stated, mm
 DURATION = 8.0 * HOUR  # after the start over which drifts are shown at least, s: a shift
 
 
@@ -100,7 +99,7 @@ def show(
     model: SavedModel | Fit | str | Path | None = None,
     program: str | Path | Sequence[str | Path] = (),
     standard: Standard | str | Path | None = None,
-    tool_length: float = DRAWN_TOOL_LENGTH,
+    tool_length: float = USUAL_TOOL_LENGTH,
     datum: Mapping[str, float] | None = None,
     options: ProgramOptions | None = None,
     control: str = "itnc530",

@@ -8,6 +8,7 @@ from matstd.commands.compensation.options import DATUM, DRIVEN, PROGRAM
 from matstd.console import say, say_each
 from matstd.options import EFFECTS, Options, add_options, output
 from matstd.twin.errors import BadArgument
+from matstd.twin.units import USUAL_TOOL_LENGTH
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -26,8 +27,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
             "--standard STANDARD.toml": "standard that the probing programs touch; also shows the "
             "clearance of the probe",
             "--tool-length MM": (
-                "length of the tool, from the spindle gauge point to the tip (150)",
-                150.0,
+                "length of the tool, from the spindle gauge point to the tip (160)",
+                USUAL_TOOL_LENGTH,
             ),
             **DATUM,
             "--control NAME|FILE.toml": (
