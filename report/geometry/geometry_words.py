@@ -223,8 +223,8 @@ def _rotary(rows: Sequence[GeometryRow]) -> str:
     if large:
         named = ", ".join(f"{r.symbol} has {digits(r.times_usual, 2)} times that" for r in large)
         note = (
-            f". {named}: the model corrects it; {POLICY.far_line:g} times and more is taken for a "
-            "mistake in the machine file"
+            f". {named}: the model corrects that; {POLICY.far_line:g} times and more is taken for "
+            "a mistake in the machine file"
         )
     sizes = {}
     for row in rows:

@@ -1,7 +1,10 @@
 """The largest errors stand first on the console, rotary centres always."""
 
+from dataclasses import replace
+
 from matstd.diagnosis.geometry import Estimate, GeometryRow, LearntGeometry, Quantity
-from matstd.report.geometry.geometry_words import noted_lines
+from matstd.diagnosis.policy import POLICY
+from matstd.report.geometry.geometry_words import noted_lines, rotary_lines
 from matstd.twin.units import UM, URAD
 
 
@@ -47,3 +50,18 @@ def test_the_largest_at_the_tool_stands_first_and_what_is_nothing_is_left_out():
 def test_without_anything_clear_the_usual_quantities_stand():
     (line,) = lines(SCALE)
     assert line.startswith("scale of Z (EZZ): 0.74 ± 0.97 ppm")
+
+
+def test_a_line_of_a_rotary_axis_beyond_twice_the_usual_is_explained():
+    """158 of 64 µm is 2.5 times the usual size; 100 of 64 is 1.6 times; 400 is another fault."""
+
+    def said(value: float) -> str:
+        made = replace(LINE, estimate=Estimate(value * UM, UM), usual=64 * UM, expected=64 * UM)
+        (line,) = rotary_lines(LearntGeometry(rows=(made,), ladder=(), corrections=()))
+        return line
+
+    assert said(100.0).endswith("usual ± 64 µm")
+    explained = said(-158.0)
+    assert "EX0C has 2.5 times that: the model corrects that" in explained
+    assert f"{POLICY.far_line:g} times and more is taken for a mistake" in explained
+    assert said(400.0).endswith("usual ± 64 µm")  # which a line of its own calls a mistake
