@@ -12,7 +12,7 @@ from pathlib import Path
 LOGS = "LOG.TXT ..."  # logs of the control, whose names only the user knows
 AUTO = "--auto"  # every effect that is found; without it a second diagnosis adds the first one
 PLANTED = "thermal-lag(EZZ)=12um,tau=15min"  # in a trial on the twin: what the model does not know
-YOUR_TABLE = "--table-mm is the size of your table"  # a template states that of its kind
+YOUR_TABLE = "; --table-mm is the size of your table"  # a template states that of its kind
 RUN = "RUN.csv"  # a run that is still to be measured
 FEWEST_OF_A_TREND = 3  # runs of one machine, as `matstd trend` asks
 
@@ -178,7 +178,8 @@ def _show(args: Namespace) -> Step:
         return called("design", project, "-o", _beside(args.machine, "out")), ""
     table = _stated_table(args.machine)
     words = called("new", "project", "--machine", args.machine, *table, "-o", project)
-    return words, f"if every axis turns about its place and in its direction; {YOUR_TABLE}"
+    why = "if every axis turns about its place and in its direction"
+    return words, why + (YOUR_TABLE if table else "")
 
 
 def _after_playing(args: Namespace) -> Step:
@@ -212,10 +213,11 @@ def _new(args: Namespace) -> Step:
         return called("new", args.kind, *like, *machine, "-o", name), "the same, in a file"
     output = args.output
     project, folder = _beside(output, "project.toml"), _beside(output, "out")
+    table = _stated_table(output)
     return {
         "machine": (
-            called("new", "project", "--machine", output, *_stated_table(output), "-o", project),
-            f"after its numbers are those of your machine; {YOUR_TABLE}",
+            called("new", "project", "--machine", output, *table, "-o", project),
+            "after its numbers are those of your machine" + (YOUR_TABLE if table else ""),
         ),
         "project": (called("design", output, "-o", folder), ""),
         "run": (called("diagnose", output, AUTO, "-o", _beside(output, "diagnosis")), ""),
