@@ -8,10 +8,10 @@ patterns without a name; and touches that are set aside as gross errors.
 **Score.** All are weighed in one projection: what the geometric model could do as well is taken out
 of them, and the evidence of a set, with what was believed before, charges it for its freedom
 (`evidence`). A set stands only if every member passes the same tests with all the others in place:
-chance, evidence, the prediction of poses, of hours and of set-ups that were left out, and what a
-body can physically do (`members`).
+chance, evidence, more touches than an accident has, and the prediction of hours and of set-ups that
+were left out (`members`).
 
-**Moves.** Add, exchange, remove, move inner parameters between the points of their grids
+**Moves.** Add, exchange, move inner parameters between the points of their grids, remove
 (`selection`). They end where none improves a set that stands.
 
 **Turns.** A touch is a gross error only beside the right effects, and an effect is found only among

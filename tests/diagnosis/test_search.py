@@ -10,6 +10,7 @@ from matstd.diagnosis.answer.ambiguity import confusion_class, plausibility
 from matstd.diagnosis.evidence import (
     EffectSet,
     Grid,
+    RawColumns,
     ResidualSpace,
     ScaledEffect,
     addition,
@@ -69,6 +70,19 @@ def search_in(space, names=NAMES):
 
 def names_of(subset):
     return {m.effect.name for m in subset.members}
+
+
+def test_raw_columns_belong_to_their_owner(planted, case) -> None:
+    """Projections that share them get the same columns; those of another run are no part of it."""
+    space = planted({})
+    (effect,) = library(space, ("thermal-lag(EZZ)",))
+    grid = Grid(effect, tuple(tuned_variants(effect, space.touches)), 1)
+    raw = RawColumns(space.touches)
+    assert raw.of(grid) is raw.of(grid)
+    np.testing.assert_array_equal(raw.of(grid), columns(grid.variants, space.touches))
+    assert not RawColumns(space.touches).kept
+    with pytest.raises(AssertionError):
+        ResidualSpace.of(fit_run(case(*KEY).run[::2], ordinary_model(space.touches.chain)), raw)
 
 
 def test_two_effects_are_found_and_no_third(planted) -> None:
