@@ -182,5 +182,5 @@ def second_run(learning: Learning, run: Run) -> SecondRun:
         touches=len(run),
         without=left(0.0),
         learnt=left(learning.predicted(run)),
-        clocked=left(learning.predicted_by_clock(run)) if is_bound else None,
+        clocked=left(learning.predicted(run, is_clock_kept=True)) if is_bound else None,
     )

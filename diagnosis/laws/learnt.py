@@ -138,21 +138,17 @@ class Learning:
                 out[effect.name] = out.get(effect.name, 0.0) + share
         return out
 
-    def predicted(self, run: Run) -> Array:
+    def predicted(self, run: Run, is_clock_kept: bool = False) -> Array:
         """Deviation that the laws add at the touches of any run, (N,), mm.
 
-        A law that belongs to the run that it was learnt from adds nothing elsewhere.
+        Args:
+            is_clock_kept: Whether what drives the laws that belong to their run kept its times;
+                else they add nothing to another one.
         """
-        return self._added(run, run.fingerprint == self.before.run.fingerprint)
-
-    def predicted_by_clock(self, run: Run) -> Array:
-        """The same, if what drives laws of the time kept the times of its run in another."""
-        return self._added(run, True)
-
-    def _added(self, run: Run, is_clock_kept: bool) -> Array:
         fit, out = self.saved, np.zeros(len(run))
+        is_kept = is_clock_kept or run.fingerprint == self.before.run.fingerprint
         for effect in fit.model.effects[len(self.before.model.effects) :]:
-            if is_clock_kept or owner_of(effect) == "machine":
+            if is_kept or owner_of(effect) == "machine":
                 out += columns([effect], run.touches) @ fit.theta[fit.of_effect(effect.name)]
         return out
 
@@ -165,11 +161,13 @@ class Learning:
         """
         if not self.laws:
             return self.after
-        used = self.after.run.touches[self.after.used]
+        used, chosen = self.after.run.touches[self.after.used], [one.law for one in self.laws]
         beyond: dict[str, Effect] = {}
         fits = []
         for share, effects in self._sets:
-            fit = self.beginning.fitted(effects, gross=self.after.gross)
+            fit = self.after
+            if effects != chosen:
+                fit = self.beginning.fitted(effects, gross=self.after.gross)
             margins = [
                 margin
                 for law in filter(None, map(law_of, effects))
@@ -180,8 +178,3 @@ class Learning:
             whole = [*effects, *own]
             fits.append((share, self.beginning.fitted(whole, gross=self.after.gross)))
         return averaged(fits)
-
-    @property
-    def u(self) -> Array:
-        """Standard uncertainty of the amplitudes and parameters; see `tangent`."""
-        return np.sqrt(np.diag(self.tangent.covariance))
