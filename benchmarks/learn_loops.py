@@ -6,10 +6,11 @@ Runs are short and faint (some 250 touches, signal to noise 8 to 25), so that se
 them. Planned visits are made on the exact simulator, which knows the law by its own formula, clamps
 the standard anew and has weather of its own. Decided: the law of the right carrier and variables
 has odds of 20 : 1 against every law of another carrier or other variables; carriers that do the
-same at every touch are one.
+same at every touch are one, and so are laws that do the same at every touch that a visit can make.
 """
 
 import time
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -23,6 +24,7 @@ from simulator_visit import visit
 
 from matstd.diagnosis.laws import Learning, learn_laws
 from matstd.diagnosis.next_visit import DECIDED, VisitPlan, plan_visit
+from matstd.twin.model import Effect
 from matstd.twin.record import Run, joined
 
 POSES, SIGNAL_TO_NOISE, VISITS = 4, (8.0, 25.0), 2
@@ -63,9 +65,15 @@ def stated(T: np.ndarray) -> tuple[np.ndarray, float]:
     return T[:3, 3], float(np.arctan2(T[1, 0], T[0, 0]))
 
 
-def decided(found: Learning, truth: dict[str, Any]) -> tuple[bool, float, float]:
-    """Whether a law is the hidden one; odds against other carriers or variables, and shapes."""
-    own = {variable(v) for v in truth["variables"]}
+def decided(
+    found: Learning, truth: dict[str, Any], alike: Sequence[Effect] = ()
+) -> tuple[bool, float, float]:
+    """Whether a law is the hidden one; odds against other carriers or variables, and shapes.
+
+    Args:
+        alike: What does the same at every touch that can be made: one class with the law.
+    """
+    own, same = {variable(v) for v in truth["variables"]}, {effect.name for effect in alike}
 
     def is_right(law: Any) -> bool:
         names = {f.driver.name for f in law.factors}
@@ -73,7 +81,9 @@ def decided(found: Learning, truth: dict[str, Any]) -> tuple[bool, float, float]
 
     for one in found.laws:
         if is_right(one.law):
-            others = [r.log_odds for r in one.rivals if not is_right(r.law)]
+            others = [
+                r.log_odds for r in one.rivals if not is_right(r.law) and r.law.name not in same
+            ]
             shapes = [r.log_odds for r in one.rivals if r.law.name != one.law.name]
             return True, min(others, default=np.inf), min(shapes, default=np.inf)
     return False, -np.inf, -np.inf
@@ -101,6 +111,12 @@ def loop(seed: int, i: int) -> list[bool]:
         if k == VISITS or out[-1]:
             break
         plan = plan_visit(found, rng)
+        if plan.alike:
+            is_right, odds, _ = decided(found, truth, plan.alike)
+            words.append(f"one class with {len(plan.alike)}: {odds:.1f}")
+            out[-1] = is_right and odds >= DECIDED
+        if out[-1]:
+            break
         if plan.touches is None:
             words.append(plan.refusal.name if plan.refusal else "")
             break
@@ -126,7 +142,7 @@ def main() -> None:
             marks.append(loop(a.seed, i))
         except ValueError as invisible:
             print(f"{i:3} left out: {invisible}", flush=True)
-    counts = np.sum(marks, axis=0)
+    counts = np.sum(marks or [[False] * (VISITS + 1)], axis=0)
     print(f"{len(marks)} loops: decided by the run {counts[0]}, after one visit {counts[1]}, "
           f"after two {counts[2]}")  # fmt: skip
 
