@@ -1,32 +1,40 @@
-"""Largest misplacement of a standard at which no touch is lost."""
+"""How far beside its stated pose a standard may stand: one limit per direction."""
 
-from collections.abc import Callable, Sequence
+from typing import NamedTuple
 
 import numpy as np
 
 from matstd.artefact.body import Meeting, contact
-from matstd.probe_paths.plan import TouchPlan
+from matstd.probe_paths.plan import SMALLEST_GAP, TouchPlan
 from matstd.twin.frames import Array, apply, fixed_xyz, inverse, pose, turn
 from matstd.twin.machine import linear_directions, tip
 from matstd.twin.sampling import spread_rows
 from matstd.twin.units import DEG
 
-STEPS_MM = (0.5, 1.0, 1.5, 2.0, 2.5)
-"""Displacements that are tried, mm; a touch looks 3 mm beyond the surface."""
+PARTS = (1.0, 0.8, 0.6, 0.4, 0.2)
+"""Parts of the clearance that are tried where a touch would be lost within it."""
 
-STEPS_DEG = (0.1, 0.25, 0.5, 1.0)  # rotations that are tried, degrees
 _TOUCHES = 60  # of the plan, evenly: each takes 3 ms, and there are twelve directions
+_HUNDREDTH = 0.01 * DEG
 
 
-def setup_tolerance(plan: TouchPlan) -> dict[str, float]:
-    """Largest displacement, either way, by which no touch of a plan is lost.
+class Admissible(NamedTuple):
+    """Largest offset of a standard in one direction, either way."""
 
-    The standard is displaced on the perfect twin, and every sampled touch has to meet its
-    planned feature within its path.
+    offset: float  # mm or rad; zero where the smallest part of the clearance is too much already
+    is_clearance: bool  # the clearance limits it; otherwise a touch that would be lost
+
+
+def setup_tolerance(plan: TouchPlan) -> dict[str, Admissible]:
+    """Offset of the standard that the programs of a plan admit: the smaller of two limits.
+
+    The programs keep the gap `SMALLEST_GAP` to a standard in its stated pose; with a larger offset
+    the probe may hit it. A rotation moves its farthest point by ``angle * distance from the axis``,
+    and is rounded down to 0.01 degrees. On the perfect twin, every sampled touch also has to meet
+    its planned feature within its path.
 
     Returns:
-        By X Y Z, mm, and A B C, degrees, about the standard's own axes; zero where the smallest
-        step is too much already.
+        By X Y Z, and A B C about the standard's own axes; one direction at a time.
     """
     # a sample of the plan: every touch is marched in twelve directions, 3 ms each
     rows = spread_rows(len(plan), _TOUCHES)
@@ -50,20 +58,18 @@ def setup_tolerance(plan: TouchPlan) -> dict[str, float]:
 
     def moved(i: int, size: float) -> Array:
         vector = size * np.eye(3)[i % 3]
-        return pose(t=vector) if i < 3 else pose(fixed_xyz(vector * DEG))
+        return pose(t=vector) if i < 3 else pose(fixed_xyz(vector))
 
-    def largest(i: int) -> float:
-        steps = STEPS_MM if i < 3 else STEPS_DEG
-        return _largest(steps, lambda size: is_met(moved(i, size)))
+    corner = np.array([*plan.standard.base.half_size, plan.standard.blank_height])
 
-    return {letter: largest(i) for i, letter in enumerate("XYZABC")}
+    def admissible(i: int) -> Admissible:
+        clearance = SMALLEST_GAP
+        if i >= 3:
+            lever = np.linalg.norm(np.delete(corner, i % 3))
+            clearance = np.floor(SMALLEST_GAP / lever / _HUNDREDTH) * _HUNDREDTH
+        for part in PARTS:
+            if is_met(moved(i, part * clearance)) and is_met(moved(i, -part * clearance)):
+                return Admissible(part * clearance, part == PARTS[0])
+        return Admissible(0.0, False)
 
-
-def _largest(steps: Sequence[float], is_good: Callable[[float], bool]) -> float:
-    """Largest step that is good in both directions, by bisection."""
-    low, high = 0, len(steps)
-    while low < high:
-        middle = (low + high + 1) // 2
-        good = is_good(steps[middle - 1]) and is_good(-steps[middle - 1])
-        low, high = (middle, high) if good else (low, middle - 1)
-    return steps[low - 1] if low else 0.0
+    return {letter: admissible(i) for i, letter in enumerate("XYZABC")}

@@ -141,15 +141,16 @@ class Writer:
                 else f"DRY RUN, RAISED BY {self.raised:+.1f} MM, NO TOUCH"
             ),
             *(k.comment(text) for text in (*self.purpose.remarks, *self._tool_remarks())),
-            k.comment("TABLE MUST BE FREE TO TURN WITH Z RETRACTED"),
+            *([k.comment("ROTARY AXES MUST BE FREE TO TURN WITH Z RETRACTED")] * bool(self.rotary)),
         ]
 
     def _tool_remarks(self) -> list[str]:
         """Preset and tool that the operator must provide."""
         probe, dialect = self.plan.probe, self.dialect
         table = f"L{probe.tool_length:+.4f} R{probe.radius:+.4f}"
+        at_zero = " WITH ROTARY AXES AT ZERO" * bool(self.rotary)
         return [
-            f"PRESET {dialect.preset}: TABLE CENTRE WITH ROTARY AXES AT ZERO, NO ROT",
+            f"PRESET {dialect.preset}: TABLE CENTRE{at_zero}, NO ROT",
             f"TOOL {dialect.tool} IS THE PROBE: {table}, SPINDLE MUST NOT TURN",
         ]
 

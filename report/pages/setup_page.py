@@ -34,14 +34,15 @@ _CAMPAIGN = (
     "Stations in their order; all logs are evaluated together. Between set-ups the standard is "
     "clamped anew; every line has its own sheet"
 )
-_PLACE = "Pose of the standard in the table frame (origin: table centre, rotary axes at zero)"
+_PLACE = "Pose of the standard in the table frame (origin: table centre{zero})"
 _TOLERANCE = (
-    "Largest offset of the standard from this pose, in either direction, at which no touch is "
-    "lost; tested on the twin with 60 touches, one direction at a time"
+    "Admissible offset of the standard from this pose, in either direction, one at a time: the "
+    f"programs keep a clearance of {SMALLEST_GAP:g} mm (of a rotation: at the farthest point of "
+    "the standard), or less where a touch would be lost, tested on the twin with 60 touches"
 )
-_CLEARANCE = (
-    "The programs keep a clearance of {gap:g} mm where everything stands as stated. A standard "
-    "with a larger offset may be hit: align it better, or state its actual pose in the project."
+_BEYOND = (
+    "A standard with a larger offset may be hit: align it better, or state its actual pose in the "
+    "project."
 )
 _ALARMS = (
     "A program that stops shows the label at which it stopped. Before number {missed} can occur, "
@@ -88,8 +89,9 @@ def write_setup_page(
     content = Page(
         heading=f"Set-up sheet: {standard.name}{serial} on {plan.chain.name}{which}",
         lead=(
-            f"{plural(len(programs.programs), 'program')}, {len(plan.visits)} visits of table "
-            f"poses, about {programs.duration / MINUTE:.0f} min. Calibration "
+            f"{plural(len(programs.programs), 'program')}, {plural(len(plan.visits), 'visit')}"
+            f"{' of table poses' * bool(plan.chain.rotary_axes)}, about "
+            f"{programs.duration / MINUTE:.0f} min. Calibration "
             f"`{calibration_hash(standard)}`, workshop `{workshop}`, as in the head of every "
             "program and log."
         ),
@@ -146,18 +148,24 @@ def _mount(plan: TouchPlan) -> list[Section]:
     held = f"{', '.join(bodies)} as drawn" if bodies else "no clamp is stated; use the base screws"
     columns = [f"{a} in mm" for a in "xyz"] + [f"about {a} in °" for a in "xyz"]
     place = [*(f"{v + 0.0:.3f}" for v in T[:3, 3]), *(f"{v + 0.0:.4f}" for v in angles)]
-    limits = [f"{tolerance[letter]:g}" for letter in "XYZABC"]
+    units = dict(zip("XYZABC", (1.0,) * 3 + (DEG,) * 3, strict=True))
+    limits = [f"{tolerance[letter].offset / unit:.3g}" for letter, unit in units.items()]
+    reasons = ["clearance" if one.is_clearance else "lost touch" for one in tolerance.values()]
+    free = " Rotary axes must be free to turn with Z retracted." * bool(plan.chain.rotary_axes)
+    zero = _zero(plan)
     return [
-        Section("Mount", table=Table(columns, [place], _PLACE)),
+        Section("Mount", table=Table(columns, [place], _PLACE.format(zero=zero))),
         Section(
-            table=Table(columns, [limits], _TOLERANCE),
-            notes=[
-                f"Clamp from outside the faces and spheres: {held}. The table must be free to turn "
-                "with Z retracted."
-            ],
-            warnings=[_CLEARANCE.format(gap=SMALLEST_GAP)],
+            table=Table(columns, [limits, reasons], _TOLERANCE),
+            notes=[f"Clamp from outside the faces and spheres: {held}.{free}"],
+            warnings=[_BEYOND],
         ),
     ]
+
+
+def _zero(plan: TouchPlan) -> str:
+    """Where the rotary axes stand when the table frame holds, if there are any."""
+    return ", rotary axes at zero" if plan.chain.rotary_axes else ""
 
 
 def _probe(station: Station) -> list[Section]:
@@ -170,7 +178,7 @@ def _probe(station: Station) -> list[Section]:
             f"{probe.tool_length:.4f}",
         ],
         ["radius of the ball in mm", f"{probe.radius:.4f}"],
-        ["preset", f"row {dialect.preset}: table centre, rotary axes at zero, no basic rotation"],
+        ["preset", f"row {dialect.preset}: table centre{_zero(station.plan)}, no basic rotation"],
     ]
     if dialect.folder:
         rows.append(["folder of programs, masks and logs", f"`{dialect.folder}`"])
@@ -223,8 +231,8 @@ def _search_step(others: Companions) -> str:
     search = others.search.programs[0]
     return (
         f"If the standard stands within {others.spread.distance:g} mm and "
-        f"{round(others.spread.angle / DEG, 3):g}° of its pose, but not within 1 mm: run "
-        f"`{search.name}` from the folder of this sheet (at most "
+        f"{round(others.spread.angle / DEG, 3):g}° of its pose, but not within the offsets above: "
+        f"run `{search.name}` from the folder of this sheet (at most "
         f"{search.duration / MINUTE + 0.5:.0f} min), then `matstd replan` with its log. It writes "
         "these programs for the actual pose of the standard."
     )

@@ -9,18 +9,20 @@ from html_tables import shown_tables
 
 from matstd.artefact.body import Meeting, contact
 from matstd.artefact.reach import TABLE, Solid
+from matstd.artefact.tool import Probe
 from matstd.probe_paths.campaign import setup_tolerance
-from matstd.probe_paths.campaign.tolerance import STEPS_MM
-from matstd.probe_paths.emit import Feeds
+from matstd.probe_paths.emit import Feeds, make_programs
 from matstd.probe_paths.language import Dialect
 from matstd.probe_paths.locate import companions
-from matstd.probe_paths.plan import Refusal
+from matstd.probe_paths.plan import PlanOptions, Refusal, plan_touches, requests_at
 from matstd.probe_paths.stations import Station
 from matstd.report.pages import write_setup_page
 from matstd.report.pages.setup_page import PAGE, PICTURE
 from matstd.report.plots import draw_setup
-from matstd.twin.frames import apply, inverse, pose, turn
-from matstd.twin.machine import linear_directions, tip
+from matstd.twin.frames import apply, inverse, pose, rotation, turn
+from matstd.twin.machine import Axis, linear_directions, make_chain, tip
+from matstd.twin.record import Setup
+from matstd.twin.units import DEG
 
 
 @pytest.fixture(scope="module")
@@ -76,30 +78,66 @@ def test_hashes_programs_and_place_are_those_of_the_head(sheet):
     np.testing.assert_allclose(found[3:], [0.0, 0.0, np.degrees(0.35)], atol=1e-4)
 
 
-def test_the_tolerance_is_where_the_first_touch_is_lost(golden):
-    """With every touch and on its own: none is lost at the stated step, one at the next."""
-    plan = golden.plan()
-    tolerance = setup_tolerance(plan)
-    assert set(tolerance) == set("XYZABC")
-    assert all(0.0 < tolerance[a] <= STEPS_MM[-1] for a in "XYZ")
+def lost(plan, angles=(0.0, 0.0, 0.0), shift=(0.0, 0.0, 0.0)):
+    """Touches of a plan that miss their feature where the standard stands beside its pose."""
     columns = [plan.chain.axis_index(a) for a in plan.chain.linear_axes]
     direction = np.zeros((len(plan), len(plan.chain.axes)))
     direction[:, [plan.chain.axis_index(a) for a in "XYZ"]] = plan.direction
     along = linear_directions(plan.chain, plan.start)
     way = np.einsum("nij,nj->ni", along, direction[:, columns])
     centre = tip(plan.chain, plan.start, plan.probe.length)
+    beside = pose(rotation(np.array(angles)), np.array(shift))
+    stands = inverse(plan.setup.T_table_artefact @ beside)
+    path = np.full(len(plan), plan.distance)
+    met = contact(plan.standard, apply(stands, centre), turn(stands, way), 3.0, path)
+    return int(np.sum((met.meeting != Meeting.SURFACE) | (met.feature != plan.feature)))
 
-    def lost(z):
-        stands = inverse(plan.setup.T_table_artefact @ pose(t=np.array([0.0, 0.0, z])))
-        path = np.full(len(plan), 8.0)
-        met = contact(plan.standard, apply(stands, centre), turn(stands, way), 3.0, path)
-        return np.sum((met.meeting != Meeting.SURFACE) | (met.feature != plan.feature))
 
-    assert lost(tolerance["Z"]) == lost(-tolerance["Z"]) == 0
-    if tolerance["Z"] < STEPS_MM[-1]:
-        beyond = STEPS_MM[STEPS_MM.index(tolerance["Z"]) + 1]
-        assert lost(beyond) + lost(-beyond) > 0
-    assert lost(-9.0) > 0
+def test_the_sheet_states_one_offset_per_direction_and_why(sheet, golden):
+    """By hand: 0.5 mm of clearance; the farthest corner is (80, 80, 80) mm from the seat's middle,
+    so 0.5 mm is 0.25 degrees about each of its axes, 0.253 before rounding down."""
+    plan = golden.plan()
+    admissible = setup_tolerance(plan)
+    for letter, one in admissible.items():
+        assert one.is_clearance
+        assert one.offset == pytest.approx(0.5 if letter in "XYZ" else 0.25 * DEG)
+    for sign in (-1.0, 1.0):
+        for unit in np.eye(3):
+            assert lost(plan, angles=sign * 0.25 * DEG * unit) == 0
+            assert lost(plan, shift=sign * 0.5 * unit) == 0
+    text, _ = sheet
+    (table,) = [t for t in shown_tables(text) if "Admissible offset" in t.caption]
+    assert table.rows[table.headings :] == [
+        ["0.5"] * 3 + ["0.25"] * 3,
+        ["clearance"] * 6,
+    ]
+    assert "2.5" not in " ".join(table.rows[-2])
+
+
+def test_touches_that_look_less_far_than_the_clearance_limit_the_offset(golden):
+    """A path that ends 0.25 mm beyond the surface admits 0.2 mm along Z, not 0.3."""
+    plan = golden.plan()
+    short = replace(plan, options=replace(plan.options, search=0.25))
+    one = setup_tolerance(short)["Z"]
+    assert one == (pytest.approx(0.2), False)
+    assert lost(short, shift=(0.0, 0.0, -0.2)) == 0
+    assert lost(short, shift=(0.0, 0.0, -0.3)) > 0
+
+
+def test_a_machine_of_three_axes_has_no_word_of_turns(golden, tmp_path):
+    axes = {a: Axis((-400.0, 400.0)) for a in "XY"} | {"Z": Axis((-600.0, 0.0))}
+    chain = make_chain("three", "[w X' Y' f Z t]", axes, (0.0, 0.0, -500.0))
+    small = golden.standard()
+    wanted = requests_at(small, "FF1", np.array([[0.0, 3.0], [5.0, -4.0]]), np.zeros(0))
+    plan = plan_touches(small, chain, Probe(), Setup("a"), wanted, PlanOptions())
+    programs, others = make_programs(plan), companions(plan, Dialect(), Feeds(), 80.0)
+    page = write_setup_page(tmp_path, [Station(plan, Dialect(), programs)], 0, others)
+    visible = re.sub(r"(?s)<(script|style).*?</\1>", "", page.read_text(encoding="utf-8"))
+    said = [visible, *(p.text for p in (*programs.programs, *others.dry_run.programs))]
+    if others.first:
+        said += [p.text for p in others.first.programs]
+    for text in said:
+        assert re.search(r"(?i)rotary|to turn\b|table poses", text) is None
 
 
 @pytest.mark.parametrize(("half", "is_whole"), [(160.0, True), (1500.0, False)])
