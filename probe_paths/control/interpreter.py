@@ -112,12 +112,15 @@ def interpret(
     check_axes(blocks, frame.letters, head, path)
     stated = promise(blocks, head, path)
     runner = Runner(blocks, places, frame, path, name, masks, head)
-    axes = len(chain.axes)
+    axes, language = len(chain.axes), language_of(path)
+    reset = language.reset(chain)
     begin = State(
         path,
         frame,
         q=np.full(axes, np.nan),
         side=np.zeros(axes),
+        is_tcpm_off=language.terms.reset not in reset,
+        is_plane_off=language.terms.plane not in reset,
         is_search=stated.is_search,
         is_first=stated.is_first,
         is_tilted=head.is_tilted,
@@ -126,7 +129,6 @@ def interpret(
     steps = runner.run(0, state)
     runner.check_logged()
     _check_promise(stated, state, runner.touches, path)
-    language = language_of(path)
     # the program must stop in every run in which one tested value is off its limit
     for test in (*interlocks(language, frame, stated.is_first), *turn_tests(language, frame)):
         for off in (-_OFF_LIMIT_FACTOR * test.limit, _OFF_LIMIT_FACTOR * test.limit):

@@ -37,12 +37,12 @@ class State:
     frame: ProgramFrame  # conversion of words to readings
     q: Array  # readings, (A,); nan where an axis has not been positioned
     side: Array  # sign of the last motion of every axis, (A,)
+    is_tcpm_off: bool  # M129 has been read, or is not needed on this machine
+    is_plane_off: bool  # the same of PLANE RESET
     parameters: dict[int, Value] = field(default_factory=dict)
     feed: float | None = None  # modal feed, mm/min
-    is_tcpm_off: bool | None = None  # None until the program says
     is_radius_off: bool = False  # R0 has been read
     is_shorter_way: bool = False  # M126 is active
-    is_plane_off: bool = False  # PLANE RESET has been read
     is_tilted: bool = False  # the head says that coordinates are those of tilted planes
     plane: ProgramFrame | None = None  # the tilted plane that is active; None where none is
     shift_off: set[str] = field(default_factory=set)  # axes whose datum shift was set to zero

@@ -28,7 +28,7 @@ class FirstWriter(Writer):
         blocks = [
             k.begin(name),
             *self._first_remarks(row, duration),
-            *k.reset,
+            *k.reset(self.plan.chain),
             self.retract,
             k.tool_call(self.dialect.tool),
             k.preset(self.dialect.preset),

@@ -167,13 +167,14 @@ class Writer:
     def _reset(self, visits: int) -> list[str]:
         k, dialect = self.language, self.dialect
         start = [k.comment(f"START AT VISIT 1 TO {visits}:"), k.assign(Q.START, 1)]
-        first = [*start, k.structure("RESET"), *k.reset, self.retract, k.tool_call(dialect.tool)]
-        return [*first, k.preset(dialect.preset), self.retract, *self._home()]
+        reset = [*start, k.structure("RESET"), *k.reset(self.plan.chain), self.retract]
+        probe = [k.tool_call(dialect.tool), k.preset(dialect.preset), self.retract]
+        return [*reset, *probe, *self._home()]
 
     def _home(self) -> list[str]:
         """Rotary axes to the position where programs begin and end, unwinding them."""
         k, home = self.language, home_readings(self.plan.chain)
-        return [*k.unwind, *([k.line(self._words(home), None)] if self.rotary else [])]
+        return [*k.unwind, k.line(self._words(home), None)] if self.rotary else []
 
     def _words(self, rotary: Array) -> dict[str, float]:
         """Words of rotary readings (R,), in the order in which the control shows its axes."""

@@ -6,6 +6,7 @@ from matstd.probe_paths.language.dialect import TOOL_LENGTH
 from matstd.probe_paths.language.language import Datum, Language, Terms, Tilting
 from matstd.probe_paths.language.masks import LogForm
 from matstd.probe_paths.language.text import MAX_LINE, signed
+from matstd.twin.machine import Chain
 
 LINE_END = "\r\n"
 PLANE_OFF = "PLANE RESET STAY"
@@ -61,6 +62,17 @@ def plane(angles: Sequence[float], master: float) -> str:
     is_free = signed(master) == signed(0.0)
     which = "TABLE ROT" if is_free else "SEQ+" if master > 0.0 else "SEQ-"
     return f"PLANE SPATIAL {words} STAY {which}"
+
+
+def _reset(chain: Chain) -> tuple[str, ...]:
+    """Blocks that begin a program on a machine.
+
+    PLANE and M128 are software options 1 and 2 of an iTNC 530 (user's manuals: 340 422 p.456, and
+    "Miscellaneous functions for rotary axes"): a control of a machine without rotary axes need not
+    know them, and nothing can be tilted there.
+    """
+    turned = ("M129", PLANE_OFF) if chain.rotary_axes else ()
+    return ("M5", *turned, *DATUM_SHIFT_OFF)
 
 
 def _lines(blocks: Sequence[str]) -> list[str]:
@@ -122,7 +134,7 @@ KLARTEXT = Language(
     ),
     printed=lambda mask, _, target: f"FN 16: F-PRINT {mask} / {target}",
     lines=_lines,
-    reset=("M5", "M129", PLANE_OFF, *DATUM_SHIFT_OFF),
+    reset=_reset,
     unwind=("M127",),
     wait="FN 20: WAIT FOR SYNC",
     tilting=Tilting(plane, PLANE_OFF),

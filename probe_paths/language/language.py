@@ -20,6 +20,7 @@ from matstd.probe_paths.language.text import (
     signed,
 )
 from matstd.twin.errors import DesignError
+from matstd.twin.machine import Chain
 
 
 class Datum(StrEnum):
@@ -110,8 +111,8 @@ class Language:
     # block that appends lines to a log, from the mask file, its lines, and the target
     printed: Callable[[str, Sequence[MaskLine], str], str]
     lines: Callable[[Sequence[str]], list[str]]  # lines of the file from all blocks
-    # blocks that begin a program: nothing that an earlier one left acts afterwards
-    reset: Sequence[str]
+    # blocks that begin a program on a machine: nothing that an earlier one left acts afterwards
+    reset: Callable[[Chain], Sequence[str]]
     wait: str  # block that stops the look-ahead: system data are read where the machine stands
     label_end: str
     operator_stop: str  # waits for the operator

@@ -60,7 +60,8 @@ def draw_setup(plan: TouchPlan) -> Figure:
         top.annotate(name, ends[0, :2], ends[1, :2], color=INK, ha="center", va="center",
                      arrowprops={"arrowstyle": "<-", "color": INK})  # fmt: skip
     top.set(aspect="equal", xlabel="x of the table in mm", ylabel="y of the table in mm")
-    top.set_title("from above, rotary axes at zero", loc="left")
+    at_zero = ", rotary axes at zero" * bool(plan.chain.rotary_axes)
+    top.set_title(f"from above{at_zero}", loc="left")
     plain(top)
     _probe(side, plan)
     return drawn

@@ -238,6 +238,9 @@ def test_other_machines_are_programmed_by_the_same_code(golden, notation, letter
     plan = plan_touches(small, chain, Probe(), Setup("a"), wanted, PlanOptions())
     made = make_programs(plan)
     assert made.programs[0].touches == 3
+    of_turns = set(re.findall(r"M12[6-9]\b|PLANE \w+ \w+", made.programs[0].text))
+    expected = {"M126", "M127", "M129", "PLANE RESET STAY"} if letters else set()
+    assert of_turns == expected  # software options 1 and 2, which a machine of three axes lacks
     words = [f"{a}{v:+.4f}" for a, v in sorted(zip(letters, pose, strict=True))]
     assert " ".join(["L", *words, "R0 F1000"]) in made.programs[0].text or not letters
 
