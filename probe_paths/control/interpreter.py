@@ -41,6 +41,10 @@ _OFF_LIMIT_FACTOR = 1.05
 """Multiple of its limit by which a value is off when the program has to stop."""
 
 
+_ANY = Dialect(head_off=("M145",))
+"""Of a program whose control is not stated: what every control of its language has."""
+
+
 def read_program(
     path: str | Path, chain: Chain, probe: Probe | None = None, dialect: Dialect | None = None
 ) -> ReadProgram:
@@ -113,7 +117,7 @@ def interpret(
     stated = promise(blocks, head, path)
     runner = Runner(blocks, places, frame, path, name, masks, head)
     axes, language = len(chain.axes), language_of(path)
-    reset = language.reset(chain)
+    reset = language.reset(chain, dialect or _ANY)
     begin = State(
         path,
         frame,
@@ -121,6 +125,7 @@ def interpret(
         side=np.zeros(axes),
         is_tcpm_off=language.terms.reset not in reset,
         is_plane_off=language.terms.plane not in reset,
+        head_left={"M115", "M145"} & set(reset),
         is_search=stated.is_search,
         is_first=stated.is_first,
         is_tilted=head.is_tilted,

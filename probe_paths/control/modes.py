@@ -178,6 +178,7 @@ _SETS = {
 """What a block alone sets in the state."""
 
 _SETTERS: Mapping[Kind, Callable[[Block, State], None]] = {
+    Kind.HEAD_OFF: lambda block, state: state.head_left.discard(block.word("mode")),
     Kind.PLANE: _plane,
     Kind.SHIFT: _shift,
     Kind.TOOL_CALL: _tool_call,

@@ -39,6 +39,7 @@ class State:
     side: Array  # sign of the last motion of every axis, (A,)
     is_tcpm_off: bool  # M129 has been read, or is not needed on this machine
     is_plane_off: bool  # the same of PLANE RESET
+    head_left: set[str]  # words of the reset that end an offset of the head, not read so far
     parameters: dict[int, Value] = field(default_factory=dict)
     feed: float | None = None  # modal feed, mm/min
     is_radius_off: bool = False  # R0 has been read
@@ -71,6 +72,7 @@ class State:
         other = copy.copy(self)
         other.q, other.side = self.q.copy(), self.side.copy()
         other.parameters, other.shift_off = dict(self.parameters), set(self.shift_off)
+        other.head_left = set(self.head_left)
         other.stale, other.reached = set(self.stale), dict(self.reached)
         other.turn_tested = set(self.turn_tested)
         return other
@@ -92,6 +94,7 @@ class State:
                 ("M5", self.is_spindle_off),
                 (self.terms.reset, self.is_tcpm_off),
                 (self.terms.plane, self.is_plane_off),
+                (min(self.head_left, default=""), not self.head_left),
                 (self.terms.shift, self.shift_off == set("XYZ")),
                 (self.terms.tool, self.tool is not None),
                 (self.terms.preset, self.preset is not None),

@@ -28,7 +28,7 @@ class FirstWriter(Writer):
         blocks = [
             k.begin(name),
             *self._first_remarks(row, duration),
-            *k.reset(self.plan.chain),
+            *k.reset(self.plan.chain, self.dialect),
             self.retract,
             k.tool_call(self.dialect.tool),
             k.preset(self.dialect.preset),

@@ -167,9 +167,9 @@ class Writer:
     def _reset(self, visits: int) -> list[str]:
         k, dialect = self.language, self.dialect
         start = [k.comment(f"START AT VISIT 1 TO {visits}:"), k.assign(Q.START, 1)]
-        reset = [*start, k.structure("RESET"), *k.reset(self.plan.chain), self.retract]
+        reset = [k.structure("RESET"), *k.reset(self.plan.chain, dialect), self.retract]
         probe = [k.tool_call(dialect.tool), k.preset(dialect.preset), self.retract]
-        return [*reset, *probe, *self._home()]
+        return [*start, *reset, *probe, *self._home()]
 
     def _home(self) -> list[str]:
         """Rotary axes to the position where programs begin and end, unwinding them."""

@@ -28,6 +28,7 @@ class Kind(Enum):
     SPINDLE_OFF = r"M0?5"
     TCPM_ON = r"M128(?: F\d+)?"
     TCPM_OFF = r"M129"
+    HEAD_OFF = r"(?P<mode>M115|M145)"
     SHORTER_WAY = r"M126"
     SHORTER_WAY_OFF = r"M127"
     PLANE_OFF = r"PLANE RESET STAY"
@@ -98,8 +99,8 @@ _KNOWN_OTHERS = (
     (r"BEGIN|END", "BEGIN PGM <name> MM and END PGM <name> MM"),
 )
 _ANYTHING = (
-    "a block of the closed list: BEGIN END ; * BLK L M5 M126 M127 M129 M140 PLANE CYCL TOOL TCH FN "
-    "LBL CALL STOP M30"
+    "a block of the closed list: BEGIN END ; * BLK L M5 M115 M126 M127 M129 M140 M145 PLANE CYCL "
+    "TOOL TCH FN LBL CALL STOP M30"
 )
 
 

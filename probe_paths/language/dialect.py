@@ -119,6 +119,8 @@ class Dialect:
     slow_feed: float = 0.0
     step_back: float = 0.0  # from the surface before the second touch, mm
     has_planes: bool = True  # the control has PLANE SPATIAL
+    # words after which the offset of a tilted head no longer enters positions, on machines with one
+    head_off: tuple[str, ...] = ("M115", "M145")
     # programs use it: coordinates are those of planes tilted with the table
     is_tilted: bool = False
     sensors: tuple[Sensor, ...] = ()  # temperatures that the control hands to programs

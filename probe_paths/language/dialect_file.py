@@ -1,9 +1,9 @@
 """Dialect files (TOML, format "dialect/1"): the words of a control, ours or a user's own."""
 
 from pathlib import Path
-from typing import Literal
+from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import Field, Strict
 
 from matstd.probe_paths.language.dialect import CYCLE_NAMES, DISTANCE_WORDS, Dialect
 from matstd.twin.errors import BadFile, DesignError
@@ -30,6 +30,7 @@ class DialectTable(Table):
     slow_feed: float = Field(default=0.0, ge=0.0, le=100.0)
     step_back: float = Field(default=0.0, ge=0.0, le=2.0)
     has_planes: bool = False
+    head_off: Annotated[tuple[Literal["M115", "M145"], ...], Strict(False)] = ("M115", "M145")
 
 
 def known_controls() -> list[str]:

@@ -167,7 +167,7 @@ GCODE = Language(
     ),
     printed=_printed,
     lines=_lines,
-    reset=lambda _: ("M5", MODES, "G61", "G92.1"),
+    reset=lambda *_: ("M5", MODES, "G61", "G92.1"),
     wait=WAIT,
     label_end="ENDSUB",
     operator_stop="M0",

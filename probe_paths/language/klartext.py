@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 
-from matstd.probe_paths.language.dialect import TOOL_LENGTH
+from matstd.probe_paths.language.dialect import TOOL_LENGTH, Dialect
 from matstd.probe_paths.language.language import Datum, Language, Terms, Tilting
 from matstd.probe_paths.language.masks import LogForm
 from matstd.probe_paths.language.text import MAX_LINE, signed
@@ -64,15 +64,20 @@ def plane(angles: Sequence[float], master: float) -> str:
     return f"PLANE SPATIAL {words} STAY {which}"
 
 
-def _reset(chain: Chain) -> tuple[str, ...]:
+def _reset(chain: Chain, dialect: Dialect) -> tuple[str, ...]:
     """Blocks that begin a program on a machine.
 
     PLANE and M128 are software options 1 and 2 of an iTNC 530 (user's manuals: 340 422 p.456, and
     "Miscellaneous functions for rotary axes"): a control of a machine without rotary axes need not
     know them, and nothing can be tilted there.
+
+    With M144 or M114 the offset of a tilted head enters every position, and no test at zero sees
+    it. M145 cancels M144 (606 42x-03 p.515). M115 cancels M114, as the end of a program does (340
+    420 ISO p.205), but not a program that was interrupted.
     """
     turned = ("M129", PLANE_OFF) if chain.rotary_axes else ()
-    return ("M5", *turned, *DATUM_SHIFT_OFF)
+    heads = dialect.head_off if chain.tool_rotary_axes else ()
+    return ("M5", *turned, *heads, *DATUM_SHIFT_OFF)
 
 
 def _lines(blocks: Sequence[str]) -> list[str]:

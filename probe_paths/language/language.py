@@ -112,7 +112,7 @@ class Language:
     printed: Callable[[str, Sequence[MaskLine], str], str]
     lines: Callable[[Sequence[str]], list[str]]  # lines of the file from all blocks
     # blocks that begin a program on a machine: nothing that an earlier one left acts afterwards
-    reset: Callable[[Chain], Sequence[str]]
+    reset: Callable[[Chain, Dialect], Sequence[str]]
     wait: str  # block that stops the look-ahead: system data are read where the machine stands
     label_end: str
     operator_stop: str  # waits for the operator

@@ -186,8 +186,9 @@ def test_words_have_one_spelling_at_both_ends(golden):
     touch = Touch([0.0, 0.6, -0.8], 8.0, 250.0, 5.0)
     blocks = [
         GCODE.begin("ALL"), GCODE.label(90, "WHY"), GCODE.jump_if_less(1613, 0, 91),
-        GCODE.label_end, *GCODE.reset(golden.machine()), GCODE.tool_call(7), GCODE.preset(3),
-        GCODE.wait, GCODE.line({"Z": 1.0}), GCODE.line({"B": -30.0}, 1000), GCODE.assign(1601, -2.5),
+        GCODE.label_end, *GCODE.reset(golden.machine(), d), GCODE.tool_call(7), GCODE.preset(3),
+        GCODE.wait, GCODE.line({"Z": 1.0}), GCODE.line({"B": -30.0}, 1000),
+        GCODE.assign(1601, -2.5),
         *GCODE.probe_vector(d, 1610, touch), GCODE.program_stop, GCODE.end("ALL"),
     ]  # fmt: skip
     found = read_blocks(GCODE.listed(blocks).encode(), "ALL.ngc")

@@ -143,6 +143,7 @@ SEEDED: dict[str, tuple[Change, str]] = {
     "tool point control left on": (insert("M128 F1000", "TCH PROBE 4.0"), "M129 before it"),
     "tool point control on a retract": (insert("M128", RETRACT, 2), "M129 before M91"),
     "tool point control not reset": (drop("M129"), "M129 before M91"),
+    "offset of a head switched on": (insert("M144", "TCH PROBE 4.0"), "block of the closed list"),
     "plane not reset": (drop("PLANE RESET"), "PLANE RESET STAY before it"),
     "a shift left over": (swap("7.2 Y+0", "7.2 Y+5"), "only the preset may shift"),
     "shift of one axis not reset": (drop("CYCL DEF 7.3"), "zeros in X, Y and Z before it"),

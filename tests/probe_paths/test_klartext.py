@@ -65,7 +65,7 @@ def test_every_block_of_the_vocabulary_is_one_that_the_parser_knows():
         "M129", PLANE_OFF, *DATUM_SHIFT_OFF, k.tool_call(7), k.preset(3), k.wait,
         plane([0.0, -30.0, 5.0], -30.0),
         k.retract(-1.0), k.turn({"B": -30.0, "C": 5.0}), k.line({"B": -30.0}, 1000),
-        "M126", "M127", k.assign(1601, 2), k.assign(1601, -2.5),
+        "M115", "M145", "M126", "M127", k.assign(1601, 2), k.assign(1601, -2.5),
         k.read(1601, Datum.OFFSET_X), k.read(1601, Datum.RADIUS), k.call(90),
         *k.probe_vector(Dialect(), 1610, Touch([0.0, 0.6, -0.8], 8.0, 250.0, 5.0)),
         k.printed("TNC:\\A\\M.A", [], "TNC:\\A\\L.TXT"), k.program_stop, k.label(90, "WHY"),

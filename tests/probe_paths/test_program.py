@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -9,10 +10,10 @@ from programs import as_read
 
 from matstd.artefact.tool import Probe
 from matstd.probe_paths.campaign import check_moves
-from matstd.probe_paths.control import Clock, Move
+from matstd.probe_paths.control import Clock, Move, interpret
 from matstd.probe_paths.emit import Feeds, make_dry_run, make_programs
 from matstd.probe_paths.emit.writer import visit_title
-from matstd.probe_paths.language import MAX_LINE, Dialect, Kind, read_blocks
+from matstd.probe_paths.language import MAX_LINE, Dialect, Kind, read_blocks, read_dialect
 from matstd.probe_paths.plan import PlanOptions, plan_touches, requests_at
 from matstd.twin.errors import BadFile, DesignError
 from matstd.twin.machine import Axis, make_chain
@@ -60,7 +61,7 @@ def test_files_are_what_the_control_takes(programs, tmp_path):
         assert len(path.stem) <= 16
         assert re.fullmatch(r"[A-Z][A-Z0-9_]*", path.stem)
         kinds = {b.kind for b in read_blocks(data, path)}
-        assert kinds == set(Kind) - {Kind.TCPM_ON, Kind.SHORTER_WAY, Kind.PLANE}
+        assert kinds == set(Kind) - {Kind.TCPM_ON, Kind.HEAD_OFF, Kind.SHORTER_WAY, Kind.PLANE}
     masks = sorted(tmp_path.glob("*.A"))
     assert {m.name for m in masks} == set(programs.masks)
     for mask in masks:
@@ -217,6 +218,18 @@ def test_an_axis_that_does_not_point_along_its_letter_is_refused(golden):
         plan_touches(golden.standard(), chain, Probe(), Setup("a"), wanted)
 
 
+def plan_on(golden, notation, letters, pose):
+    """Two touches and an anchor on one face of another machine, at one pose, degrees."""
+    axes = {a: Axis((-400.0, 400.0)) for a in "XY"} | {"Z": Axis((-600.0, 0.0))}
+    axes |= {a: Axis((-120.0 * DEG, 120.0 * DEG), (0.0, 0.0, -420.0)) for a in letters}
+    if "B t" in notation:
+        axes["B"] = Axis((-40.0 * DEG, 40.0 * DEG), (0.0, 0.0, 0.0))
+    chain = make_chain("other", notation, axes, (0.0, 0.0, -500.0))
+    small = golden.standard()
+    wanted = requests_at(small, "FF1", np.array([[0.0, 3.0], [5.0, -4.0]]), np.array(pose) * DEG)
+    return plan_touches(small, chain, Probe(), Setup("a"), wanted, PlanOptions())
+
+
 @pytest.mark.parametrize(
     ("notation", "letters", "pose"),
     [
@@ -228,21 +241,31 @@ def test_an_axis_that_does_not_point_along_its_letter_is_refused(golden):
 )
 def test_other_machines_are_programmed_by_the_same_code(golden, notation, letters, pose):
     """Three axes, one rotary axis, a tilting head, a trunnion about X: plan, text, text read."""
-    axes = {a: Axis((-400.0, 400.0)) for a in "XY"} | {"Z": Axis((-600.0, 0.0))}
-    axes |= {a: Axis((-120.0 * DEG, 120.0 * DEG), (0.0, 0.0, -420.0)) for a in letters}
-    if "B t" in notation:
-        axes["B"] = Axis((-40.0 * DEG, 40.0 * DEG), (0.0, 0.0, 0.0))
-    chain = make_chain("other", notation, axes, (0.0, 0.0, -500.0))
-    small = golden.standard()
-    wanted = requests_at(small, "FF1", np.array([[0.0, 3.0], [5.0, -4.0]]), np.array(pose) * DEG)
-    plan = plan_touches(small, chain, Probe(), Setup("a"), wanted, PlanOptions())
-    made = make_programs(plan)
+    made = make_programs(plan_on(golden, notation, letters, pose))
     assert made.programs[0].touches == 3
-    of_turns = set(re.findall(r"M12[6-9]\b|PLANE \w+ \w+", made.programs[0].text))
+    of_turns = set(re.findall(r"M1[124][4-9]\b|PLANE \w+ \w+", made.programs[0].text))
     expected = {"M126", "M127", "M129", "PLANE RESET STAY"} if letters else set()
-    assert of_turns == expected  # software options 1 and 2, which a machine of three axes lacks
+    expected |= {"M115", "M145"} if "B t" in notation else set()
+    # of software options 1 and 2, which a machine of three axes lacks
+    assert of_turns == expected
     words = [f"{a}{v:+.4f}" for a, v in sorted(zip(letters, pose, strict=True))]
     assert " ".join(["L", *words, "R0 F1000"]) in made.programs[0].text or not letters
+
+
+@pytest.mark.parametrize(("control", "words"), [("itnc530", "M115 M145"), ("tnc640", "M145")])
+def test_an_offset_of_the_head_is_switched_off_before_any_move(golden, control, words):
+    """Each word is demanded of a program whose control is stated, M145 of every program."""
+    plan, dialect = plan_on(golden, "[w C' f X Y Z B t]", "CB", (40.0, 10.0)), read_dialect(control)
+    made = make_programs(plan, dialect)
+    lines = [re.sub(r"^\d+ ", "", line) for line in made.programs[0].text.splitlines()]
+    first_move = next(i for i, line in enumerate(lines) if line.startswith("L "))
+    assert [s for s in lines[:first_move] if s in ("M115", "M145")] == words.split()
+    for word in words.split():
+        left = "\r\n".join(line for line in lines if line != word) + "\r\n"
+        stated = (dialect, None) if word == "M145" else (dialect,)
+        for one in stated:
+            with pytest.raises(BadFile, match=f"expected {word} before it"):
+                interpret(left.encode(), Path("MS_A_1.H"), made.masks.get, plan.chain, dialect=one)
 
 
 def test_titles_of_many_visits_fit_on_their_lines(plan):
