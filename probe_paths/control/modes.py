@@ -32,6 +32,9 @@ _CALIBRATED: Mapping[Datum, Callable[[State], float]] = {
     Datum.TOOL_X: lambda _: 0.0,
     Datum.TOOL_Y: lambda _: 0.0,
     Datum.ROTATION: lambda _: 0.0,
+    Datum.CYCLE_ROTATION: lambda _: 0.0,
+    Datum.MIRROR: lambda _: 0.0,
+    **{Datum[f"SCALE_{a}"]: lambda _: 1.0 for a in LINEAR},
     Datum.TOP: lambda state: state.frame.chain.link("Z").range[1],
 }
 

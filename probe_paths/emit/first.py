@@ -1,7 +1,8 @@
 """The commissioning program: everything that the others rely on, once, in few blocks.
 
 A programming station without a licence keeps a hundred blocks. The program therefore tests only
-what decides where the ball comes down, has one alarm, and prints its whole log at once.
+what decides where the ball comes down, has one alarm, and prints its whole log at once. It goes
+home without M127: a turn the shorter way, with Z up, does no harm.
 """
 
 import numpy as np
@@ -24,7 +25,9 @@ class FirstWriter(Writer):
         k = self.language
         # one alarm for all tests: each label would cost blocks of the hundred
         row, visit = self._touch_from_above(), self.plan.visits[0]
-        tests = interlocks(k, self.frame, is_first=True)
+        above = {a: float(self.plan.start[row, self.plan.chain.axis_index(a)]) for a in "XY"}
+        tests = interlocks(k, self.frame, is_first=True, above=above)
+        places = [test for test in tests if test.is_above]
         blocks = [
             k.begin(name),
             *self._first_remarks(row, duration),
@@ -33,9 +36,12 @@ class FirstWriter(Writer):
             k.tool_call(self.dialect.tool),
             k.preset(self.dialect.preset),
             self.retract,
-            *self._home(),
+            *self._home()[-1:],
             *self._probe_data(),
-            *(block for test in tests for block in self._tested(test)),
+            *(block for test in tests if not test.is_above for block in self._tested(test)),
+            k.line(self.frame.coordinates(self.plan.start[row], "XY"), None),
+            k.wait,
+            *(block for test in places for block in self._tested(test)),
             *self._in_air(row, visit.height),
             *self._on_ball(row, visit.pose),
             self.retract,
@@ -84,7 +90,6 @@ class FirstWriter(Writer):
         back = {**start, "Z": self.frame.coordinate("Z", height)}
         return [
             k.assign(Q.STATUS, 0),
-            k.line(start, None),
             k.line({"Z": back["Z"]}, None),
             *self._cycle(row),
             k.jump_if_less(Q.STATUS, 0, Label.AIR),

@@ -54,6 +54,7 @@ class Label(IntEnum):
     OTHER_PROBE = 92
     NOT_AS_PLANNED = 93
     AIR = 94
+    CYCLES = 95
     RADIUS = 101
     ROTATION = 102
     TOP = 103

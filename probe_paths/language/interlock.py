@@ -5,6 +5,7 @@ a label that stops the program where the rest is beyond a limit. The number of t
 alarm that the operator reads. A language without a datum has no such test.
 """
 
+from collections.abc import Mapping
 from typing import NamedTuple
 
 from matstd.probe_paths.language.dialect import LENGTH_LIMIT, Label
@@ -18,6 +19,10 @@ ANGLE_LIMIT = 0.05  # largest basic rotation and rotary zero, degrees: 0.2 mm at
 
 OFFSET_LIMIT = 0.05
 """Largest offset of a tool from the spindle axis, mm: the program moves by all of it."""
+
+SCALE_LIMIT = 5e-4  # largest difference of a scaling factor from 1: 0.1 mm at 200 mm
+
+MIRROR_LIMIT = 0.5  # of a number of bits: none may be set
 
 RADIUS_LIMIT = 0.2  # largest difference of the calibrated ball's radius, mm
 
@@ -35,9 +40,18 @@ class Interlock(NamedTuple):
     planned: float  # what is left where all is as planned, mm or degrees
     limit: float  # by how much it may differ
 
+    @property
+    def is_above(self) -> bool:
+        """A test of where X or Y stands, above the ball of a commissioning program."""
+        return self.work is None and self.datum in (Datum.X, Datum.Y)
 
-_FIRST = (Label.OTHER_PROBE, Label.ROTATION, Label.PRESET_X, Label.PRESET_Y, Label.PRESET_Z)
-"""What decides where the ball comes down, which a commissioning program tests."""
+
+NOWHERE = {"X": 0.0, "Y": 0.0}  # where a place is asked for and none is known
+
+_CYCLES = "cycle 8, 10, 11 or 26"
+
+_FIRST = (Label.OTHER_PROBE, Label.ROTATION, Label.PRESET_Z)
+"""What a commissioning program tests beside the place above the ball."""
 
 
 def turn_tests(language: Language, frame: ProgramFrame) -> list[Interlock]:
@@ -50,17 +64,29 @@ def turn_tests(language: Language, frame: ProgramFrame) -> list[Interlock]:
     return [Interlock(*row) for row in rows]
 
 
-def interlocks(language: Language, frame: ProgramFrame, is_first: bool = False) -> list[Interlock]:
+def interlocks(
+    language: Language,
+    frame: ProgramFrame,
+    is_first: bool = False,
+    above: Mapping[str, float] = NOWHERE,
+) -> list[Interlock]:
     """Tests of a program, in their order.
 
+    A commissioning program has few blocks. In place of presets and cycles it tests the place above
+    the ball, which all of them would move.
+
     Args:
-        is_first: For a commissioning program, which has few blocks and one alarm for all.
+        is_first: For a commissioning program, which has one alarm for all.
+        above: Readings of X and Y above its ball, mm.
     """
     probe, chain = frame.probe, frame.chain
     rows: list[tuple[Label, str, Datum | None, Datum | None, float, float]] = [
         (Label.OTHER_PROBE, "length of the tool", None, None, probe.tool_length, LENGTH_LIMIT),
         (Label.RADIUS, "radius of the ball", Datum.RADIUS, None, probe.radius, RADIUS_LIMIT),
         (Label.ROTATION, "basic rotation", Datum.ROTATION, None, 0.0, ANGLE_LIMIT),
+        (Label.CYCLES, _CYCLES, Datum.CYCLE_ROTATION, None, 0.0, ANGLE_LIMIT),
+        (Label.CYCLES, _CYCLES, Datum.MIRROR, None, 0.0, MIRROR_LIMIT),
+        *((Label.CYCLES, _CYCLES, Datum[f"SCALE_{a}"], None, 1.0, SCALE_LIMIT) for a in LINEAR),
         (Label.TOP, "upper end of Z", Datum.TOP, None, chain.link("Z").range[1], TOP_LIMIT),
     ]
     for letter, label in zip(LINEAR, (Label.PRESET_X, Label.PRESET_Y, Label.PRESET_Z), strict=True):
@@ -76,4 +102,6 @@ def interlocks(language: Language, frame: ProgramFrame, is_first: bool = False) 
     tests = [test for test in tests if test.datum in known and test.work in known]
     if not is_first:
         return tests
-    return [test._replace(label=Label.NOT_AS_PLANNED) for test in tests if test.label in _FIRST]
+    few = [test._replace(label=Label.NOT_AS_PLANNED) for test in tests if test.label in _FIRST]
+    places = ((f"place in {a}", Datum(a), None, at, PRESET_LIMIT) for a, at in above.items())
+    return [*few, *(Interlock(Label.NOT_AS_PLANNED, *place) for place in places)]

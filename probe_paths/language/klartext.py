@@ -85,6 +85,7 @@ def _lines(blocks: Sequence[str]) -> list[str]:
     return [p for i, block in enumerate(blocks) for p in f"{i} {block}".split(LINE_END)]
 
 
+# ID210: technical manual TNC 426/430, p.7-30; Klartext manual TNC 620 (01/2022), p.560
 SYSTEM: Mapping[Datum, str] = {
     Datum.RADIUS: "ID350 NR11",
     Datum.LENGTH: "ID350 NR12",
@@ -95,6 +96,9 @@ SYSTEM: Mapping[Datum, str] = {
     Datum.B: "ID240 NR1 IDX5",
     Datum.C: "ID240 NR1 IDX6",
     Datum.ROTATION: "ID210 NR1",
+    Datum.CYCLE_ROTATION: "ID210 NR2",
+    Datum.MIRROR: "ID210 NR3",
+    **{Datum[f"SCALE_{a}"]: f"ID210 NR4 IDX{i}" for i, a in enumerate("XYZ", start=1)},
     Datum.TOP: "ID230 NR3 IDX3",
     **{Datum(a): f"ID240 NR1 IDX{i}" for i, a in enumerate("XYZ", start=1)},
     **{Datum(f"preset {a}"): f"ID270 NR1 IDX{i}" for i, a in enumerate("XYZABC", start=1)},

@@ -21,6 +21,7 @@ PAGE, PICTURE = "setup.html", "setup.png"  # names in the folder of the sheet
 
 _REMEDY = {
     Label.OTHER_PROBE: "number and length of the probe in the tool table, to the ball's far pole",
+    Label.CYCLES: "status display: end the rotation, mirror image or scaling by its own cycle",
     Label.RADIUS: "calibration of the probe; another stylus",
     Label.ROTATION: "column ROT of the preset's row",
     Label.TOP: "software limit of Z against the machine file",

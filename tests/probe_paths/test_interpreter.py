@@ -219,6 +219,8 @@ SEEDED: dict[str, tuple[Change, str]] = {
         swap("FN 11: IF +Q1614", "FN 11: IF +Q1602"),
         "after a touch without contact",
     ),
+    "mirror image not tested": (drop("GT +0.5000 GOTO LBL 95"), "cycle 8, 10, 11 or 26 is off"),
+    "scaling in Y not tested": (swap("NR4 IDX2", "NR4 IDX1"), "cycle 8, 10, 11 or 26 is off"),
     "spindle not stopped": (drop("M5"), "M5 before it"),
     "loop without end": (insert("CALL LBL 90", "FN 12: IF +Q1613"), "8 at most"),
 }  # fmt: skip
@@ -226,6 +228,7 @@ SEEDED: dict[str, tuple[Change, str]] = {
 
 ALARMS = {
     92: ("length of the tool", 1.05),
+    95: ("cycle 8, 10, 11 or 26", 0.0525),
     101: ("radius of the ball", 0.21),
     102: ("basic rotation", 0.0525),
     103: ("upper end of Z", 5.25),

@@ -55,7 +55,7 @@ def test_touches_left_out_for_one_reason_stand_in_one_line(golden, tmp_path):
 def test_every_alarm_of_the_programs_is_explained(sheet):
     text, programs = sheet
     alarms = set(re.findall(r"LBL (\d+) ;(?:ALARM|NOTRIGGER)", programs.programs[0].text))
-    assert len(alarms) == 10
+    assert len(alarms) == 11
     (table,) = [t for t in shown_tables(text) if t.section == "Alarms"]
     stated = {row[0]: row for row in table.rows[table.headings :]}
     assert set(stated) == alarms
