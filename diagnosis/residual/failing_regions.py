@@ -5,7 +5,8 @@ component error of every axis (and the standard, and the probe) is supposed wron
 within a box of readings. Its column is the Jacobian of the touch times one inside the box, freed of
 what the fitted model imitates, so that an error whose deviation changes sign with the normal, or
 which a free set-up takes up in part, is seen as well as any other. The box with the most evidence
-is reported, put into the model, and the next is looked for.
+is put into the model, and the next is looked for. What is reported of a box is how far the error is
+off there beside the fitted model alone, whatever other boxes were found: the mean of its touches.
 """
 
 from collections.abc import Iterator, Sequence
@@ -44,6 +45,10 @@ travel the model imitates nearly all, and the rest rests on its errors of second
 
 MOST_REGIONS = 6  # regions that are looked for
 
+MIN_SIZE = 3.0
+"""Size over its uncertainty from which a region is reported. One that stands out only against those
+found before it, as the end of a drift does, may be off by nothing."""
+
 PARTS = ("shift-x", "shift-y", "shift-z", "bias")
 """Carriers beside the components of the axes: the standard, and the reading along the normal."""
 
@@ -53,8 +58,10 @@ class Wrong(NamedTuple):
 
     carrier: str  # a component error, or one of `PARTS`
     alike: tuple[str, ...]  # others that the touches of the region do not distinguish from it
-    size: float  # by how much it is wrong, mm or rad
-    u: float  # standard uncertainty of the size, from the noise
+    # by how much it is wrong beside the fitted model, mm or rad: mean of residual over lever c,
+    # weighted by (c/u)^2, of all touches in the region
+    size: float
+    u: float  # standard uncertainty of the size, from the noise that the regions so far leave
     is_angular: bool  # whether it is an angle
 
 
@@ -77,8 +84,9 @@ class Region:
 def regions(fit: Fit, cured: Fit | None = None) -> tuple[Region, ...]:
     """Regions of a run in which one error is not what the model has, the most evident first.
 
-    Each is looked for beside those before it. Where there is none, regions where the residual
-    scatters more than elsewhere.
+    Each is looked for beside those before it; the size of each is that beside the fitted model, so
+    that regions may share touches. Where there is none, regions where the residual scatters more
+    than elsewhere.
 
     Args:
         cured: The same with the effects that it lacked. What they explain then draws the regions:
@@ -186,7 +194,8 @@ def _wrong(
     known: Sequence[Bounded],
     drawn: Array | None,
 ) -> Iterator[Region]:
-    """Regions in which an error is off by a constant, each beside those before it."""
+    """Regions in which an error is off by a constant, each looked for beside those before it."""
+    whole = ResidualSpace.of(fit)
     others = PARTS if space.touches.instrument.has_standard else PARTS[-1:]
     offered = bearers(space.touches, lambda C: _white(space, C), others)
     columns = [b.carrier.columns(space.touches)[:, 0] for b in offered]
@@ -206,14 +215,18 @@ def _wrong(
         if p >= POLICY.false_alarm or drop < POLICY.material_share * left:
             return
         bearer = offered[found.measure]
+        lever = (rows * columns[found.measure])[fit.used] / fit.u[fit.used]
+        size = float(lever @ (fit.residual / fit.u)[fit.used] / (lever @ lever))
+        seen = np.linalg.norm(_white(whole, (rows * columns[found.measure])[:, None]))
         wrong = Wrong(
             carrier=bearer.carrier.name,
             alike=_alike(space, offered, inside, found.measure),
-            size=along / own,
-            u=float(np.sqrt((left - drop) / max(space.dof - 1.0, 1.0) / own)),
+            size=size,
+            u=float(np.sqrt((left - drop) / max(space.dof - 1.0, 1.0)) / seen),
             is_angular=bearer.carrier.is_angular,
         )
-        yield _region(fit, known, found.box, wrong, p)
+        if abs(size) > MIN_SIZE * wrong.u:
+            yield _region(fit, known, found.box, wrong, p)
         direction = c / np.sqrt(own)
         if drawn is not None:
             drawn = drawn - direction * (direction @ drawn)
@@ -300,22 +313,14 @@ def _region(fit: Fit, known: Sequence[Bounded], box: Box, wrong: Wrong | None, p
 
 
 def observed_error(fit: Fit, region: Region) -> tuple[IntArray, Array, Array]:
-    """What touches say of the error that is off in a region: its partial residuals.
-
-    The residual with the region in the model, divided by the deviation along the normal per unit of
-    the error, plus its size inside.
+    """What touches say of the error that is off in a region: residual over its lever.
 
     Returns:
         Rows that see it well enough (M,), the error there (M,), mm or rad, and their weights (M,).
     """
     assert region.wrong is not None
-    wrong, touches = region.wrong, fit.run.touches
-    space = ResidualSpace.of(fit)
-    lever = carrier_of(wrong.carrier, touches.chain).columns(touches)[:, 0]
-    own = space.project(_white(space, (region.rows * lever)[:, None]))[: len(space.u), 0]
-    rows = np.flatnonzero(space.used)
-    left = (space.residual[: len(rows)] - wrong.size * own) * space.u
-    seen = np.abs(lever[rows]) >= MIN_VIEW * float(np.quantile(np.abs(lever[rows]), 0.99))
-    rows, left = rows[seen], left[seen]
-    values = left / lever[rows] + wrong.size * region.rows[rows]
-    return rows, values, (lever[rows] / fit.run.u[rows]) ** 2
+    touches, rows = fit.run.touches, np.flatnonzero(fit.used)
+    lever = carrier_of(region.wrong.carrier, touches.chain).columns(touches)[rows, 0]
+    seen = np.abs(lever) >= MIN_VIEW * float(np.quantile(np.abs(lever), 0.99))
+    rows, lever = rows[seen], lever[seen]
+    return rows, fit.residual[rows] / lever, (lever / fit.run.u[rows]) ** 2

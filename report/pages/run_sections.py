@@ -29,9 +29,9 @@ PATTERN_PICTURES = 3  # patterns that are drawn at most
 REGIONS = 2  # regions that are drawn
 
 _REGION = (
-    "Residual of each touch divided by its lever on this error, the region (shaded) in the model, "
-    "over each variable that bounds the region; only touches within its other bounds. Dots: means "
-    "with standard errors. Line: the size found."
+    "Residual of each touch divided by its lever on this error, over each variable that bounds the "
+    "region (shaded); only touches within its other bounds. Dots: means with standard errors. "
+    "Line: the size, the weighted mean in the region."
 )
 
 DEPENDENCES = 8  # variables that a table lists with their patterns; further ones are named below it
@@ -113,8 +113,9 @@ def region_section(fit: Fit, found: Sequence[Region], title: str = "") -> Sectio
         "probability by chance": lambda r: p_value(r.p_value),
     }
     caption = (
-        "Errors of one component that are off in a part of the run (± standard uncertainty), each "
-        "beside those above it; the probability counts all components and regions that were tried"
+        "Errors of one component that are off in a part of the run: mean beside what the fitted "
+        "model says (± standard uncertainty from the noise). Regions may share touches; the "
+        "probability counts all components and regions that were tried"
     )
     drawn = [
         Picture(f"{PICTURES}/region_{k}.png", f"{capital(region_sentence(r))}. {_REGION}", picture)

@@ -13,6 +13,8 @@ from simulator_laws import local_law
 from matstd.diagnosis.files.diagnosis_file import conditions_text
 from matstd.diagnosis.fit import fit_run
 from matstd.diagnosis.residual import Condition, Side, observed_error, regions
+from matstd.importers import one_axis_machine, positioning_run
+from matstd.importers.instruments import PositioningTest
 from matstd.report.words.diagnosis_words import region_words
 from matstd.twin.laws import carrier_of
 from matstd.twin.library import ordinary_model
@@ -60,12 +62,59 @@ def test_a_box_of_two_conditions_is_found_with_its_error(case, fit_with) -> None
         ("Y_mm", Side.BELOW),
     }
     assert (first.rows & box).sum() > 0.85 * (first.rows | box).sum()
-    assert first.wrong.size == pytest.approx(25.0 * URAD, abs=4.0 * first.wrong.u)
     assert first.p_value < 1e-9
     rows, observed, weight = observed_error(fit, first)
-    for inside, size in ((box[rows], 25.0 * URAD), (~box[rows], 0.0)):
+    # the free set-up takes up a part of it: plain least squares says how much is left
+    planted = np.where(box, 25.0 * URAD * lever, 0.0)
+    left = planted - fit.X @ np.linalg.lstsq(fit.X, planted, rcond=None)[0]
+    for inside in (box[rows], ~box[rows]):
         mean = np.average(observed[inside], weights=weight[inside])
-        assert mean == pytest.approx(size, abs=2.0 * URAD)
+        expected = np.average((left / lever)[rows[inside]], weights=weight[inside])
+        assert mean == pytest.approx(expected, abs=2.0 * URAD)
+    expected = np.average((left / lever)[box], weights=lever[box] ** 2)
+    assert expected < 20.0 * URAD  # 25 is what was planted, and not what the fit leaves
+    assert first.wrong.size == pytest.approx(expected, abs=4.0 * first.wrong.u)
+
+
+@pytest.fixture(scope="module")
+def warming():
+    """200 readings at one place while it warms: regions of time that share touches."""
+    time = 60.0 * np.arange(200)
+    drift = 4.0 * UM * 3.0 * (1.0 - np.exp(-time / 2400.0))
+    noise = np.random.default_rng(0).normal(0.0, 0.4 * UM, len(time))
+    test = PositioningTest(
+        axis="X",
+        target=np.full(len(time), 50.0),
+        deviation=drift + noise,
+        cycle=np.ones(len(time), dtype=np.int64),
+        direction=np.ones(len(time), dtype=np.int64),
+        line=np.arange(len(time)),
+        time=time,
+    )
+    run = positioning_run(test, one_axis_machine("X", np.array([0.0, 100.0])), 0.5 * UM)
+    return fit_run(run, ordinary_model(run.touches.chain))
+
+
+def test_a_size_is_the_mean_of_its_touches_whatever_other_regions_were_found(warming) -> None:
+    """Readings of one axis see EXX with a lever of one: the mean deviation from their mean."""
+    found = regions(warming)
+    assert len(found) > 1
+    time, deviation = warming.run.touches.time, warming.run.deviation
+    # a deviation along the outward normal is positive where the tool stays behind
+    beside, shares = deviation.mean() - deviation, False
+    for region in found:
+        (low, high) = (
+            next((float(c.bound) for c in region.conditions if c.side is side), end)
+            for side, end in ((Side.FROM, -np.inf), (Side.BELOW, np.inf))
+        )
+        inside = (time >= low) & (time < high)
+        shares |= any((other.rows & inside).any() for other in found if other is not region)
+        assert region.wrong is not None
+        assert region.wrong.carrier == "EXX"
+        assert region.wrong.size == pytest.approx(beside[inside].mean(), rel=1e-3)
+        # the noise alone is least; what the regions leave of the drift comes on top
+        assert region.wrong.u > 0.4 * UM / np.sqrt(inside.sum())
+    assert shares
 
 
 @pytest.mark.parametrize("index", [0, *slow(4)])
