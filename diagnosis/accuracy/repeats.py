@@ -1,9 +1,9 @@
 """Repeatability of the data themselves: what the same touch scatters by, whatever the model.
 
 The stated noise is an opinion; repeated touches are its only witness. Three kinds, the strictest
-first: replicates, made in one pose in one approach; re-visits, which return to a place later, and
-so include what an hour does; near neighbours, which any smooth error moves alike, so that their
-differences bound the noise from above.
+first: replicates, made one after the other before the machine leaves the place; re-visits, which
+return to a place later, and so include what an hour does; near neighbours, which any smooth error
+moves alike, so that their differences bound the noise from above.
 """
 
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ from scipy.spatial import cKDTree
 
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.policy import POLICY
-from matstd.diagnosis.regression import f_tail, replicate_groups
+from matstd.diagnosis.regression import f_tail, places_of
 from matstd.twin.frames import Array, IntArray
 from matstd.twin.numbers import rms
 from matstd.twin.record import Touches
@@ -35,8 +35,8 @@ class Repeatability:
     """Scatter of repeated touches beside the stated noise."""
 
     stated: float  # root mean square of the stated uncertainties, mm
-    replicates: Scatter | None  # of one place, pose and approach
-    # of one place and approach in any pose: it includes what happened between
+    replicates: Scatter | None  # of one place, from one touch to the next while the machine stays
+    # of one place and approach to which the machine returned: it includes what happened between
     revisits: Scatter | None
     neighbours: Scatter | None  # of near neighbours; an upper bound
 
@@ -75,24 +75,30 @@ class Repeatability:
 
 def repeatability(fit: Fit) -> Repeatability:
     """Scatter of repeated touches about a fit, which removes the little that they differ in."""
-    stated = rms(fit.run.u)
+    stated, noise = rms(fit.run.u), fit.noise
     z = fit.residual / fit.run.u
-
-    def within(group: IntArray) -> Scatter | None:
-        inside = group >= 0
-        group, values = group[inside], z[inside]
-        count = np.bincount(group)
-        mean = np.bincount(group, values) / np.maximum(count, 1)
-        dof = int((count[count > 1] - 1).sum())
-        squares = float(((values - mean[group]) ** 2).sum())
-        return Scatter(stated * float(np.sqrt(squares / dof)), dof) if dof else None
-
+    replicates = None
+    if noise.replicates is not None:
+        replicates = Scatter(stated * noise.replicates, noise.replicates_dof)
     return Repeatability(
         stated=stated,
-        replicates=within(replicate_groups(fit.run, fit.used)),
-        revisits=within(replicate_groups(fit.run, fit.used, in_any_pose=True)),
+        replicates=replicates,
+        revisits=_revisits(fit, z, stated),
         neighbours=_neighbours(fit.run.touches, z, np.flatnonzero(fit.used), stated),
     )
+
+
+def _revisits(fit: Fit, z: Array, stated: float) -> Scatter | None:
+    """Scatter of the first touches of all visits to one place."""
+    place, visit = places_of(fit.run, fit.used)
+    rows = np.flatnonzero(fit.used)
+    first = np.unique(np.column_stack([place, visit])[rows], axis=0, return_index=True)[1]
+    group, values = place[rows[first]], z[rows[first]]
+    count = np.bincount(group)
+    mean = np.bincount(group, values) / np.maximum(count, 1)
+    dof = int((count[count > 1] - 1).sum())
+    squares = float(((values - mean[group]) ** 2).sum())
+    return Scatter(stated * float(np.sqrt(squares / dof)), dof) if dof else None
 
 
 def _neighbours(touches: Touches, z: Array, rows: IntArray, stated: float) -> Scatter | None:
@@ -106,7 +112,8 @@ def _neighbours(touches: Touches, z: Array, rows: IntArray, stated: float) -> Sc
     distance, index = cKDTree(np.hstack([place, group])).query(np.hstack([place, group]), k=2)
     own = np.arange(len(rows))
     other = np.where(index[:, 1] == own, index[:, 0], index[:, 1])
-    pairs = np.unique(np.sort(np.column_stack([own, other]), axis=1)[distance[:, 1] < NEAR], axis=0)
+    near = (distance[:, 1] > 0.0) & (distance[:, 1] < NEAR)  # at no distance it is a repeat
+    pairs = np.unique(np.sort(np.column_stack([own, other]), axis=1)[near], axis=0)
     if len(pairs) < MIN_PAIRS:
         return None
     d = z[rows[pairs[:, 0]]] - z[rows[pairs[:, 1]]]

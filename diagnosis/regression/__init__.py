@@ -23,8 +23,8 @@ from matstd.diagnosis.regression.noise import (
     PRIOR_DOF,
     Noise,
     noise_factor,
+    places_of,
     replicate_factor,
-    replicate_groups,
 )
 
 __all__ = [
@@ -41,8 +41,8 @@ __all__ = [
     "left_out",
     "likely_memory",
     "noise_factor",
+    "places_of",
     "replicate_factor",
-    "replicate_groups",
     "robust_scale",
     "shots",
     "solve",

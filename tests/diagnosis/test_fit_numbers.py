@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 from marks import slow
 
+from matstd.diagnosis.accuracy import repeatability
 from matstd.diagnosis.fit import fit_run
-from matstd.diagnosis.regression import left_out, replicate_groups, solve
+from matstd.diagnosis.regression import left_out, places_of, replicate_factor, solve
 from matstd.diagnosis.remarks import What, noticed, remarks
 from matstd.importers import one_axis_machine, positioning_run
 from matstd.importers.instruments import PositioningTest
@@ -238,20 +239,64 @@ def test_replicates_distinguish_noise_from_what_the_model_lacks(case) -> None:
     assert fit_run(run, fit.model).noise.replicates is None
 
 
+def _readings_at(time, target, deviation, u):
+    test = PositioningTest(
+        axis="X",
+        target=target,
+        deviation=deviation,
+        cycle=np.ones(len(time), dtype=np.int64),
+        direction=np.ones(len(time), dtype=np.int64),
+        line=np.arange(len(time)),
+        time=time,
+    )
+    return positioning_run(test, one_axis_machine("X", np.array([0.0, 100.0])), u)
+
+
 def test_readings_on_the_way_are_no_replicates() -> None:
     """Steps of 10 µm of an encoder over 1.2 mm, and steps of 2 µm of a laser over as much."""
     for time, step in ((np.arange(120.0), 0.01), (np.zeros(600), 0.002)):
         at = 5.0 + step * np.arange(len(time))
-        nothing = np.zeros(len(at))
-        test = PositioningTest(
-            axis="X",
-            target=at,
-            deviation=nothing,
-            cycle=np.ones(len(at), dtype=np.int64),
-            direction=np.ones(len(at), dtype=np.int64),
-            line=np.arange(len(at)),
-            time=time,
-        )
-        run = positioning_run(test, one_axis_machine("X", at), 1.0 * UM)
-        group = replicate_groups(run, np.ones(len(at), dtype=bool))
-        assert len(np.unique(group)) == len(at)
+        run = _readings_at(time, at, np.zeros(len(at)), 1.0 * UM)
+        place, _ = places_of(run, np.ones(len(at), dtype=bool))
+        assert len(np.unique(place)) == len(at)
+
+
+def test_a_drift_between_replicates_is_no_repeatability() -> None:
+    """Triplets seconds apart in a warming of 150 µm; numpy pools the deviations of the triplets."""
+    rng = np.random.default_rng(3)
+    triplets = 400
+    time = (60.0 * np.arange(triplets)[:, None] + [0.0, 4.0, 8.0]).ravel()
+    drift = 150.0 * UM * (1.0 - np.exp(-time / 6000.0))
+    deviation = drift + rng.normal(0.0, 1.2 * UM, len(time))
+    run = _readings_at(time, np.full(len(time), 50.0), deviation, 2.0 * UM)
+    factor, dof = replicate_factor(run, deviation / run.u, np.ones(len(time), dtype=bool))
+    pooled = np.sqrt(deviation.reshape(triplets, 3).var(axis=1, ddof=1).mean())
+    assert factor * 2.0 * UM == pytest.approx(pooled, rel=SIGMAS / np.sqrt(2.0 * dof))
+    assert dof == int(2 * 800**2 / (3 * 800 - 400))  # chains of two differences
+
+
+def test_steady_readings_show_their_noise_while_they_drift() -> None:
+    """Readings a minute apart without a pause; numpy removes the drift that was put in."""
+    rng = np.random.default_rng(4)
+    time = 60.0 * np.arange(300)
+    noise = rng.normal(0.0, 0.5 * UM, len(time))
+    deviation = 12.0 * UM * (1.0 - np.exp(-time / 2400.0)) + noise
+    run = _readings_at(time, np.full(len(time), 50.0), deviation, 0.5 * UM)
+    factor, dof = replicate_factor(run, deviation / run.u, np.ones(len(time), dtype=bool))
+    assert factor * 0.5 * UM == pytest.approx(noise.std(), rel=SIGMAS / np.sqrt(2.0 * dof))
+
+
+def test_a_place_that_was_left_is_revisited_and_not_replicated() -> None:
+    """Five targets in turn, 20 rounds: what drifts between the rounds is in the re-visits alone."""
+    rng = np.random.default_rng(5)
+    target = np.tile(20.0 * np.arange(5), 20)
+    time = 10.0 * np.arange(len(target))
+    deviation = 0.05 * UM * time / 10.0 + rng.normal(0.0, 0.3 * UM, len(time))
+    run = _readings_at(time, target, deviation, 0.5 * UM)
+    assert replicate_factor(run, deviation / run.u, np.ones(len(time), dtype=bool)) == (None, 0)
+    fit = fit_run(run, ordinary_model(run.touches.chain))
+    found = repeatability(fit)
+    assert found.replicates is None
+    left = fit.residual.reshape(20, 5)
+    assert found.revisits.size == pytest.approx(np.sqrt(left.var(axis=0, ddof=1).mean()))
+    assert found.revisits.dof == 95
