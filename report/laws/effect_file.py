@@ -84,7 +84,7 @@ def _class(learning: Learning, law: Law, kind: str, run: str) -> str:
     is_entry = law.carrier.symbol is not None or law.carrier.name == "bias"
     entry = f', "{law.carrier.name}"' if is_entry else ""
     units = [f"{law.place_names[i]}: {law.units[i]}" for i in _free(law)]
-    typical = "; ".join(amplitude_words(a) for a in amplitudes(learning, law)[:3])
+    typical = "; ".join(amplitude_words(law, a) for a in amplitudes(learning, law)[:3])
     return CLASS.format(
         name=name,
         summary=f"{formula_words(law)}.",

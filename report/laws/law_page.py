@@ -138,7 +138,7 @@ def _key(learning: Learning, second: SecondRun | None) -> list[KeyFigure]:
 def _law_sections(learning: Learning, one: LearntLaw, number: int) -> list[Section]:
     law = one.law
     several = len(learning.laws) > 1
-    numbers = [_row(a, amplitude_words(a)) for a in amplitudes(learning, law)][:6]
+    numbers = [_row(a, amplitude_words(law, a)) for a in amplitudes(learning, law)][:6]
     if law.is_curve_alone:
         numbers = []
     numbers += [_row(p, place_words(p)) for p in places(learning, law)]

@@ -144,13 +144,34 @@ def _fixed_words(value: float, unit: str) -> str:
     return unit if unit and value == 1.0 else f"{value:g} {unit}".strip()
 
 
-def amplitude_words(one: Estimate) -> str:
-    """`-10.3 ± 0.3 µm`."""
+_POWERS = {"quad": "²", "quad-about": "²", "cubic": "³", "power": "^p", "play-quad": "²"}
+"""Power of the variable that the amplitude of a shape is per unit of; of others the first."""
+
+
+def amplitude_words(law: Law, one: Estimate) -> str:
+    """`-10.3 ± 0.3 µm`; of a slope per what, `-4.01 ± 0.04 µm per K`, `3.1 ± 0.2 µm per 300 mm`."""
     scale, unit = {"mm": (UM, "µm"), "rad": (URAD, "µrad"), "1": (1.0, "")}.get(
         one.unit, (1.0, one.unit)
     )
     words = with_uncertainty(one.value / scale, None if one.u is None else one.u / scale, unit)
+    words += "".join(f" per {_unit_of(law, f, own)}" for f, own in law.parts if _is_per(f, one))
     return f"{one.name} {words}" if one.name != "amplitude" else words
+
+
+def _is_per(factor: Factor, one: Estimate) -> bool:
+    """Whether an amplitude is per unit of the variable of a factor."""
+    is_constant = len(factor.shape.coefficients) > 1 and "slope" not in one.name
+    return "unit" in factor.shape.places and not is_constant
+
+
+def _unit_of(law: Law, factor: Factor, own: slice) -> str:
+    """What a slope over a variable is per: `K`, `(300 mm)²`, `90 °`."""
+    value, unit = law.places[own][factor.shape.places.index("unit")], factor.driver.unit
+    if unit == "rad":
+        value, unit = value / DEG, "°"
+    words = "K" if (value, unit) == (1.0, "degC") else _fixed_words(value, unit).replace("°C", "K")
+    power = _POWERS.get(factor.shape.word, "")
+    return f"({words}){power}" if power and " " in words else f"{words}{power}"
 
 
 def place_words(one: Estimate) -> str:
@@ -224,11 +245,11 @@ def _size(learning: Learning, law: Law) -> str:
     if law.is_curve_alone:
         own = partial_residual(learning, law)[1]
         return f"{microns(float((own**2).mean() ** 0.5))} rms at the touches"
-    if len(found) == 1:
-        return amplitude_words(found[0])
+    if len(found) == 1 or any("slope" in a.name for a in found):  # no two of one unit to sum
+        return ", ".join(amplitude_words(law, a) for a in found)
     total = math.sqrt(sum(a.value**2 for a in found))
     u = math.sqrt(sum((a.value * (a.u or 0.0)) ** 2 for a in found)) / max(total, 1e-300)
-    return amplitude_words(Estimate("amplitude", total, u, found[0].unit))
+    return amplitude_words(law, Estimate("amplitude", total, u, found[0].unit))
 
 
 def looks_like(law: Law) -> str:
