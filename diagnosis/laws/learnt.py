@@ -18,6 +18,10 @@ from matstd.twin.library import owner_of
 from matstd.twin.model import Effect, columns
 from matstd.twin.record import Run
 
+AS_WELL = 1.0
+"""Log odds up to which one explanation is as good as another: a bare mention (Kass and Raftery,
+Journal of the American Statistical Association 90 (1995) 773-795)."""
+
 
 @dataclass(frozen=True, eq=False)
 class Rival:
@@ -47,6 +51,11 @@ class LearntLaw:
     def travels(self) -> bool:
         """Whether it belongs to the machine and not to the run that it was learnt from."""
         return self.law.belongs_to == "machine"
+
+    @property
+    def is_of_library(self) -> bool:
+        """Whether an effect of the library explains the same as well or better."""
+        return self.library is not None and self.score - self.library.score < AS_WELL
 
     @property
     def run_odds(self) -> float:
@@ -106,6 +115,15 @@ class Learning:
     def before(self) -> Fit:
         """The fit without laws."""
         return self.beginning.fit
+
+    @property
+    def of_library(self) -> list[str]:
+        """Effects of the library that explain as well or better what every law does, by name.
+
+        Empty where a law explains more than any of them: it then stands in the headline.
+        """
+        named = [one.library.effect.name for one in self.laws if one.library and one.is_of_library]
+        return list(dict.fromkeys(named)) if len(named) == len(self.laws) else []
 
     @property
     def effect_names(self) -> list[str]:

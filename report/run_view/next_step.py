@@ -17,6 +17,9 @@ def diagnosis_step(result: Diagnosis, title: str, is_saved: bool = False) -> str
         return f"Repeat {what}; their scatter decides whether the residual is noise."
     is_unexplained = result.verdict is Verdict.UNEXPLAINED
     if result.laws is not None and result.laws.laws and (is_unexplained or result.withdrawn):
+        if result.laws.of_library:
+            adds = " ".join(f'--add "{name}"' for name in result.laws.of_library)
+            return f"`matstd diagnose {_files(title)} {adds}` puts the effect into model.toml."
         auto = f"`matstd diagnose {_files(title)} --auto`"
         until = (
             "model.toml predicts with it until then."

@@ -8,6 +8,7 @@ from matstd.diagnosis.answer import Comparison, Diagnosis, Verdict
 from matstd.diagnosis.task import TaskUncertainty
 from matstd.report.numbers import microns, plural, um
 from matstd.sensitivity.study import Study
+from matstd.twin.words import listed
 
 
 def diagnosis_meaning(result: Diagnosis) -> str:
@@ -18,6 +19,14 @@ def diagnosis_meaning(result: Diagnosis) -> str:
         return (
             f"The model describes the machine as far as this run shows: {touched}. It may be used "
             "to correct the machine in the state in which it was probed."
+        )
+    laws = result.laws if result.laws is not None and result.laws.laws else None
+    of_library = [] if laws is None else laws.of_library
+    if of_library and (result.withdrawn or result.verdict is Verdict.UNEXPLAINED):
+        return (
+            f"What acts on the machine is in the library: {listed(of_library, 'and')}. The learnt "
+            "law describes it no better and stands for it until the effect is added. Without it "
+            f"predictions are off by {before} rms; with it {touched}."
         )
     if result.withdrawn:
         return (
@@ -32,7 +41,7 @@ def diagnosis_meaning(result: Diagnosis) -> str:
             f"other states (warm, other direction, other place) differ from the prediction by "
             f"{before} rms; with it {touched}."
         )
-    if result.verdict is Verdict.UNEXPLAINED and result.laws is not None and result.laws.laws:
+    if result.verdict is Verdict.UNEXPLAINED and laws is not None:
         return (
             "Something acts on the machine that no effect of the library accounts for. The learnt "
             "law describes it and model.toml predicts with it, within the range that was probed. "

@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from matstd.diagnosis.answer import Diagnosis, Step, Verdict
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.laws import Learning
-from matstd.report.effects import class_words
+from matstd.diagnosis.policy import POLICY
+from matstd.report.effects import class_words, words_of_name
 from matstd.report.laws import (
     held_out_sentence,
     instead_sentence,
@@ -16,8 +17,9 @@ from matstd.report.laws import (
 from matstd.report.numbers import digits, microns
 from matstd.report.words.diagnosis_words import noise_words, sizes, stated_noise, structure_clause
 from matstd.twin.units import DEG
-from matstd.twin.words import listed
+from matstd.twin.words import few, listed
 
+NAMED_ALIKE = 3  # effects of the library that are named as not distinguished from a first one
 PERIODS_NAMED = 4  # indistinguishable periods that are named, the longest ones
 UNREPORTED_EXCESS = 0.1
 """Excess over the stated noise that is not reported: half a per cent of its size."""
@@ -144,10 +146,8 @@ def _verdict_alone(diagnosis: Diagnosis) -> str:
     found = [_added(diagnosis, s, most) for s in others if s.effect and s.effect.name in certain]
     doubtful = len(others) - len(found)
     laws = diagnosis.laws if diagnosis.laws is not None and diagnosis.laws.laws else None
-    if laws is not None and diagnosis.withdrawn:
-        return _of_law(laws, named)
-    if laws is not None and diagnosis.verdict is Verdict.UNEXPLAINED:
-        return _of_law(laws, [*named, *found])
+    if laws is not None and (diagnosis.withdrawn or diagnosis.verdict is Verdict.UNEXPLAINED):
+        return _of_law(diagnosis, laws, named if diagnosis.withdrawn else [*named, *found])
     also = f" Added by name: {'; '.join(named)}." if named else ""
     them = "it" if len(steps) == 1 else "them"
     if diagnosis.verdict is Verdict.MISSING:
@@ -180,23 +180,44 @@ def _plural(count: int) -> str:
     return "one effect" if count == 1 else f"{count} effects"
 
 
-def _of_law(laws: Learning, added: Sequence[str]) -> str:
+def _of_law(diagnosis: Diagnosis, laws: Learning, added: Sequence[str]) -> str:
     """The laws, the names that they withdraw, and the error with them.
+
+    Where the library explains as well or better, its effects come first.
 
     Args:
         added: Effects that stand beside them.
     """
     what = "a law that the library does" if len(laws.laws) == 1 else "laws that the library does"
     beside = f"Beside {'it' if len(laws.laws) == 1 else 'them'}: {'; '.join(added)}."
+    first = f"The model lacks {what} not have: {_laws(laws)}."
+    if laws.of_library:
+        each = [_of_library(diagnosis, name) for name in laws.of_library]
+        first = (
+            f"The model lacks {_plural(len(each))}: {'; '.join(each)}. Second choice, a law "
+            f"that explains no more: {_laws(laws)}."
+        )
     said = [
-        f"The model lacks {what} not have: {_laws(laws)}.",
-        *(rival_sentence(one) for one in laws.laws),
+        first,
+        *(rival_sentence(one) for one in laws.laws if not laws.of_library),
         instead_sentence(laws),
         beside if added else "",
         held_out_sentence(laws),
         f"The noise is {noise_words(laws.after)}.",
     ]
     return " ".join(filter(None, said))
+
+
+def _of_library(diagnosis: Diagnosis, name: str) -> str:
+    """An effect of the library, with those that alone explain the run about as well."""
+    own = next((c.log_odds for c in diagnosis.candidates if c.effect == name), math.inf)
+    alike = [
+        c.effect
+        for c in diagnosis.candidates
+        if c.effect != name and c.log_odds > own - POLICY.log_odds_alike
+    ]
+    words = words_of_name(name, diagnosis.run.touches.chain)
+    return f"{words}, or {few(alike, NAMED_ALIKE, 'or')}, not distinguished" if alike else words
 
 
 def _laws(laws: Learning) -> str:
