@@ -84,8 +84,6 @@ def _label(found: History, i: int) -> str:
     return f"{(found.begin + timedelta(days=float(found.days[i]))).date()}"
 
 
-PAGE, PICTURES = "report.html", "pictures"
-
 _CHARTS = (
     "Dots: one run each, with its standard uncertainty. Line and band: mean and control limits, "
     "mean ± 3 s, between changes. Red line: a step, with the time in which it happened. Orange: a "
@@ -133,7 +131,7 @@ def write_history_page(found: History, folder: str | Path, title: str, follows: 
         sections=[*_changes(found), *_groups(found), *_all(found)],
         foot=_foot(found),
     )
-    write_page(Path(folder) / PAGE, page)
+    write_page(Path(folder) / "report.html", page)
 
 
 def _todo(found: History, follows: str) -> str:
@@ -164,7 +162,7 @@ def _changes(found: History) -> list[Section]:
     if not found.changed:
         return []
     lines = [sentence(line) for chart in found.changed for line in change_lines(found, chart)]
-    drawn = Picture(f"{PICTURES}/changed.png", _CHARTS, draw_charts(found, found.changed))
+    drawn = Picture("pictures/changed.png", _CHARTS, draw_charts(found, found.changed))
     return [Section("What changed", items=lines, pictures=[drawn])]
 
 
@@ -175,7 +173,7 @@ def _groups(found: History) -> list[Section]:
         charts = [c for c in found.charts if c.of.quantity in quantities and not c.has_changed]
         if charts:
             explained = _CHARTS if not found.changed and not out else f"{title}: no change."
-            file = f"{PICTURES}/{title.split()[0].lower()}.png"
+            file = f"pictures/{title.split()[0].lower()}.png"
             out.append(
                 Section(title, pictures=[Picture(file, explained, draw_charts(found, charts))])
             )

@@ -20,8 +20,6 @@ from matstd.twin.machine import Chain
 from matstd.twin.numbers import rms_length
 from matstd.twin.units import DEG, UM
 
-PAGE, PICTURES = "report.html", "pictures"
-
 SMALLEST_LISTED = 1e-2 * UM
 """Errors below this size are not listed: 10 nm are below the resolution of the tables."""
 
@@ -75,13 +73,13 @@ def write_compensation_page(
         sections=[
             Section(
                 sentences=[" ".join(filter(None, (_FIGURES, tools)))],
-                pictures=[Picture(f"{PICTURES}/left.png", overview, draw_errors_left(results))],
+                pictures=[Picture("pictures/left.png", overview, draw_errors_left(results))],
                 notes=[f"Not errors of the axes, and in no table: {names}."] if names else [],
             ),
             *(section for p in done for section in _control(p, errors.chain)),
         ],
     )
-    write_page(Path(folder) / PAGE, page)
+    write_page(Path(folder) / "report.html", page)
 
 
 def _key(first: Result, done: Sequence[VerifiedTables]) -> list[KeyFigure]:
@@ -116,7 +114,7 @@ def _control(played: VerifiedTables, chain: Chain) -> list[Section]:
     if any(e.rms >= least for e in result.left):
         caption = "Each error by itself: before, and what remains with the table."
         drawn = draw_shares(result.left)
-        pictures.append(Picture(f"{PICTURES}/{played.format}.png", caption, drawn))
+        pictures.append(Picture(f"pictures/{played.format}.png", caption, drawn))
     caption = (
         "Errors that this format cannot represent, µm rms over the workspace, each by itself; "
         "together they partly offset each other"

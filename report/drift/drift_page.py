@@ -74,8 +74,6 @@ def draw_laws(record: DriftRecord, judged: Sequence[Judged], best: Judged) -> Fi
     return drawn
 
 
-PAGE, PICTURES = "report.html", "pictures"
-
 _CHOICE = (
     "The choice is made within the training hours. Every law, with its orders, sensors and "
     "weights, is estimated again without each of four blocks and predicts that block as a free "
@@ -145,14 +143,14 @@ def write_drift_page(
         ],
         sections=[
             Section(
-                notes=record.remarks, pictures=[Picture(f"{PICTURES}/drift.png", measured, drift)]
+                notes=record.remarks, pictures=[Picture("pictures/drift.png", measured, drift)]
             ),
             Section(
                 "Comparison of the laws",
                 sentences=[_CHOICE.format(step=span(record.step))],
                 table=_laws(record, judged, best, hold),
                 pictures=[
-                    Picture(f"{PICTURES}/laws.png", step_ahead, draw_laws(record, judged, best))
+                    Picture("pictures/laws.png", step_ahead, draw_laws(record, judged, best))
                 ],
             ),
             *_probed(probings),
@@ -161,7 +159,7 @@ def write_drift_page(
             _FOOT.format(components=", ".join(record.components), drives=", ".join(record.drives))
         ],
     )
-    write_page(Path(folder) / PAGE, page)
+    write_page(Path(folder) / "report.html", page)
 
 
 def _laws(record: DriftRecord, judged: Sequence[Judged], best: Judged, hold: Array) -> Table:

@@ -30,8 +30,6 @@ from matstd.report.layout import KeyFigure, LiveView, Page, Picture, Section, Ta
 from matstd.report.numbers import digits, microns, odds_words, sentence
 from matstd.twin.units import UM
 
-PAGE, PICTURES = "report.html", "pictures"
-
 _WHAT = (
     "A law states what the remainder depends on and how it looks. It has no cause: that is for you "
     "to find. It was chosen among all carriers, variables and shapes by the evidence of the run, "
@@ -91,7 +89,7 @@ def write_law_page(
         foot=[_FOOT],
         live=live,
     )
-    write_page(Path(folder) / PAGE, page)
+    write_page(Path(folder) / "report.html", page)
 
 
 def law_sections(
@@ -143,7 +141,7 @@ def _law_sections(learning: Learning, one: LearntLaw, number: int) -> list[Secti
         numbers = []
     numbers += [_row(p, place_words(p)) for p in places(learning, law)]
     picture = Picture(
-        f"{PICTURES}/law_{number}.png",
+        f"pictures/law_{number}.png",
         "The law with twice its uncertainty (of a curve without a formula that of its form beside "
         "a parabola, which geometry takes up), and the touches with the law put back, over their "
         "levers on the carrier. Touches with a small lever are not drawn.",
@@ -206,7 +204,7 @@ def _held_out(learning: Learning, second: SecondRun | None) -> Section:
         table=Table(("left out", "without the law", "with it"), rows, caption),
         pictures=[
             Picture(
-                f"{PICTURES}/before_after.png",
+                "pictures/before_after.png",
                 "Residual over the variables of the law, without it (above) and with it (below).",
                 draw_before_after(learning),
             )

@@ -32,18 +32,19 @@ PROSE = 60  # characters from which a cell that begins with a number is a senten
 _NUMBER = re.compile(r"[<±+\-−]?\s?\d")
 
 
-def write_page(path: str | Path, page: Page) -> None:
+def write_page(path: Path, page: Page) -> Path:
     """Save the pictures of a page, render it into one file, and write its tables beside it.
 
-    The page is written whole or not at all.
+    The page is written whole or not at all. Returns its path.
     """
-    folder = Path(path).parent
+    folder = path.parent
     for picture in (p for section in page.sections for p in section.pictures):
         if picture.figure is not None:
             (folder / picture.file).parent.mkdir(parents=True, exist_ok=True)
             save(picture.figure, folder / picture.file)
     write_whole(path, in_own_unit(rendered(page, folder)))
     write_tables(folder, page)
+    return path
 
 
 def rendered(page: Page, folder: Path) -> str:

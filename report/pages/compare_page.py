@@ -26,7 +26,6 @@ from matstd.report.words import comparison_sentence, learnt_lines, remark_senten
 from matstd.twin.frames import Array
 from matstd.twin.units import UM
 
-PAGE = "report.html"
 PATTERN_ROWS = 12  # patterns that the table lists
 
 _PREDICTED = (
@@ -81,9 +80,7 @@ def write_compare_page(
         next=comparison_step(found, title),
         live=comparison_view(found, title, body),
     )
-    path = Path(folder) / PAGE
-    write_page(path, page)
-    return path
+    return write_page(Path(folder) / "report.html", page)
 
 
 def _key(found: Comparison) -> list[KeyFigure]:

@@ -19,7 +19,6 @@ from matstd.report.pages.rival_sections import (
     tried_sections,
 )
 from matstd.report.pages.run_sections import (
-    PICTURES,
     dependence_section,
     extent,
     on_standard,
@@ -45,8 +44,6 @@ from matstd.report.words import (
 from matstd.twin.frames import Array
 from matstd.twin.library import kinds
 from matstd.twin.units import UM
-
-PAGE = "report.html"
 
 _COURSE = (
     "Left: the part of the run that this effect explains, with its fitted course. Right: the same "
@@ -109,9 +106,7 @@ def write_diagnosis_page(
         next=diagnosis_step(result, title, is_saved),
         live=diagnosis_view(result, title, body),
     )
-    path = Path(folder) / PAGE
-    write_page(path, page)
-    return path
+    return write_page(Path(folder) / "report.html", page)
 
 
 def is_open(result: Diagnosis) -> bool:
@@ -167,7 +162,7 @@ def _steps(result: Diagnosis) -> Section:
             "The held-out error decides; that of the touches in the fit is optimistic, because "
             f"{len(result.fit.parameters)} parameters were fitted to them."
         )
-        pictures.append(Picture(f"{PICTURES}/fall.png", caption, draw_fall(result)))
+        pictures.append(Picture("pictures/fall.png", caption, draw_fall(result)))
     return Section(
         "Error after each step",
         sentences=[_HELD_OUT],
@@ -222,7 +217,7 @@ def _effect(result: Diagnosis, i: int) -> Section:
         capital(class_words(step)),
         is_part=True,
         sentences=[s for s in sentences if s],
-        pictures=[Picture(f"{PICTURES}/effect_{i}.png", _FORM if form else _COURSE, drawn)],
+        pictures=[Picture(f"pictures/effect_{i}.png", _FORM if form else _COURSE, drawn)],
     )
 
 

@@ -8,7 +8,6 @@ from matstd.diagnosis.fit import file_unit
 from matstd.report.effects import effect_title, plan_words
 from matstd.report.layout import Picture, Section, Table
 from matstd.report.numbers import digits, noun, odds_words, p_value, percent, unit_words
-from matstd.report.pages.run_sections import PICTURES
 from matstd.report.plots import draw_candidates, draw_rivals
 from matstd.report.style import series
 from matstd.report.words import scanned_sentence, structure_words
@@ -56,7 +55,7 @@ def tried_sections(result: Diagnosis) -> list[Section]:
         },
     )
     words = f"{count} effects of the library apply to these touches. Each was added alone to the "
-    picture = Picture(f"{PICTURES}/candidates.png", _EVIDENCE, draw_candidates(result))
+    picture = Picture("pictures/candidates.png", _EVIDENCE, draw_candidates(result))
     return [
         *out,
         Section(sentences=[f"{words}starting model:"], pictures=[picture]),
@@ -112,7 +111,7 @@ def _rivals(step: Step, i: int) -> list[Section]:
     if confusion is not None and has_picture:
         caption = f"Rivals of {effect_title(step.effect)}."
         drawn = draw_rivals(confusion, series(i - 1))
-        pictures.append(Picture(f"{PICTURES}/rivals_{i}.png", caption, drawn))
+        pictures.append(Picture(f"pictures/rivals_{i}.png", caption, drawn))
     if not alike:
         return [Section(sentences=[_single(step)], pictures=pictures)]
     others = "one of these" if len(alike) > 1 else "this effect"

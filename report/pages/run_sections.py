@@ -23,7 +23,6 @@ from matstd.twin.frames import Array
 from matstd.twin.record import Run, Touches
 from matstd.twin.units import UM
 
-PICTURES = "pictures"  # folder beside a page
 FIRST, WHOLE = 12, 40  # variables that are shown unfolded, and at most
 PATTERN_PICTURES = 3  # patterns that are drawn at most
 REGIONS = 2  # regions that are drawn
@@ -58,7 +57,7 @@ def residual_sections(name: str, fit: Fit, z: Array | None = None) -> list[Secti
         name: First word of the files.
         z: Residuals over their standard uncertainty where that exceeds the touch's own, (N,).
     """
-    panels, file = rank_variables(fit), f"{PICTURES}/{name}"
+    panels, file = rank_variables(fit), f"pictures/{name}"
     first, more = panels[:FIRST], panels[FIRST:WHOLE]
     out = []
     if first:
@@ -77,7 +76,7 @@ def residual_sections(name: str, fit: Fit, z: Array | None = None) -> list[Secti
 def on_standard(touches: Touches, *fits: tuple[str, Fit]) -> list[Picture]:
     """The standard coloured by residual, all fits on one scale; none for readings at one place."""
     caption = "Touched points in the frame of the standard, coloured by residual."
-    file = f"{PICTURES}/on_standard.png"
+    file = "pictures/on_standard.png"
     return [Picture(file, caption, draw_on_standard(fits))] if is_spread(touches) else []
 
 
@@ -98,7 +97,7 @@ def pattern_pictures(
         drawn = draw_pattern(fit, one, rng)
         if drawn is not None:
             words = f"{capital(structure_words(one))}; probability by chance {p_value(one.p_value)}"
-            out.append(Picture(f"{PICTURES}/pattern_{k}.png", f"{words}.", drawn))
+            out.append(Picture(f"pictures/pattern_{k}.png", f"{words}.", drawn))
     return out
 
 
@@ -118,7 +117,7 @@ def region_section(fit: Fit, found: Sequence[Region], title: str = "") -> Sectio
         "probability counts all components and regions that were tried"
     )
     drawn = [
-        Picture(f"{PICTURES}/region_{k}.png", f"{capital(region_sentence(r))}. {_REGION}", picture)
+        Picture(f"pictures/region_{k}.png", f"{capital(region_sentence(r))}. {_REGION}", picture)
         for k, r in enumerate(found[:REGIONS])
         if (picture := draw_region(fit, r)) is not None
     ]

@@ -112,8 +112,7 @@ def write_setup_page(
         ],
         foot=["Limits in mm; those of angles in degrees."],
     )  # fmt: skip
-    write_page(folder / page, content)
-    return folder / page
+    return write_page(folder / page, content)
 
 
 def _omitted(plan: TouchPlan) -> list[str]:

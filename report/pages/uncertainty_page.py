@@ -72,7 +72,7 @@ def write_uncertainty_page(
             Section("Visits", table=visits, notes=[as_sentence(line) for line in remarks]),
         ],
     )
-    write_page(path, page)
+    write_page(Path(path), page)
 
 
 def _key(found: Mapping[str, TaskUncertainty]) -> list[KeyFigure]:

@@ -31,9 +31,7 @@ class Framed:
         """Make the page of a view; arguments as of `Page`."""
         page = Page(heading=title, lead=lead, key=(), sections=(), live=view)
         with TemporaryDirectory() as folder:
-            path = Path(folder) / "view.html"
-            write_page(path, page)
-            self.page = path.read_text(encoding="utf-8")
+            self.page = write_page(Path(folder) / "view.html", page).read_text(encoding="utf-8")
 
     def _repr_html_(self) -> str:
         """The page in a frame of its own, so that neither disturbs the other."""
