@@ -7,7 +7,9 @@ from dataclasses import dataclass
 Row = tuple[int, Sequence[str | float]]  # a line of the file with its cells
 
 MIN_EQUAL_NAMES = 0.5  # from this share of equal names two headers belong to parts of one table
-_AXIS = re.compile(r"\b(?:axis|achse|axe|eje)\b\W*([XYZABC])\b", re.IGNORECASE)
+_AXIS = re.compile(
+    r"\b(?:axis|achse|axe|eje)\b\W*([XYZABC])\b|\b([XYZABC])[- ](?:axis|achse)\b", re.IGNORECASE
+)
 
 
 @dataclass(frozen=True)
@@ -60,8 +62,9 @@ def separate_tables(
 
 
 def axis_in(words: str) -> str:
-    """Letter of the axis that words name last, as in `Axis: X`; "" where they name none."""
-    return (_AXIS.findall(words) or [""])[-1].upper()
+    """Letter of the axis that words name last, `Axis: X` or `X-Achse`; "" where they name none."""
+    found = [before or behind for before, behind in _AXIS.findall(words)]
+    return (found or [""])[-1].upper()
 
 
 def _names(row: Sequence[str | float]) -> tuple[str, ...]:

@@ -95,6 +95,9 @@ REPORTS = {
     "two axes": f"Axis Y\nTarget [mm],{NUMBERED}\n{rows([TARGETS, *[v + 40.0 for v in both()]])}\n"
     f"{STATISTICS}\n\nAxis X\n{READINGS}\n\n{STATISTICS}\n",
 }
+REPORTS["two axes in German"] = (
+    REPORTS["two axes"].replace("Axis Y", "Y-Achse").replace("Axis X", "Prüfung der X-Achse")
+)
 
 
 @pytest.mark.parametrize("kind", REPORTS)
