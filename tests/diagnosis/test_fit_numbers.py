@@ -206,8 +206,10 @@ def test_fewer_touches_than_parameters(case) -> None:
         u = np.sqrt(np.diag(fit.covariance))
         assert np.all(u <= sd * fit.widened * (1.0 + SAME))
         squares.append(np.mean(((fit.theta - theta) / u) ** 2))
-    (remark,) = [r for r in remarks(fit) if getattr(r, "what", None) is What.FEW_TOUCHES]
+    stated = {r.what: r for r in remarks(fit) if hasattr(r, "what")}
+    remark, room = stated[What.FEW_TOUCHES], stated[What.FEW_DEGREES_OF_FREEDOM]
     assert remark.touches == len(few) < remark.parameters < len(sd)  # some errors nothing feels
+    assert room.dof == pytest.approx(len(few) - fit.solution.effective_parameters)
     assert fit.solution.effective_parameters < len(few)
     error = np.std(squares) / np.sqrt(len(squares))
     assert np.mean(squares) == pytest.approx(1.0, abs=SIGMAS * error)
