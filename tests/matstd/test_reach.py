@@ -175,7 +175,7 @@ def test_travels_of_a_table_with_the_opposite_sign_are_reported(tmp_path: Path) 
 
 def test_travels_of_the_opposite_sign_far_from_the_table_are_asked_about(tmp_path: Path) -> None:
     asked = (
-        r"axis.Y.range: found \[100, 700\], 500 mm away from the table, expected readings that "
+        r"axis.Y.range: found \[100, 700\], 500 mm from the table, expected readings that "
         r"move the tool relative to the workpiece; is it \[-700, -100\]\?"
     )
     with pytest.raises(BadFile, match=asked):

@@ -269,14 +269,15 @@ def _far_table(chain: Chain) -> Iterator[BadValue]:
         words = f"and a table {away:.0f} mm beyond"
         yield from (_in_centimetres(chain, name, words) for name in small)
         return
-    for link in chain.links:
-        is_along = link.kind == "linear" and abs(link.direction[axis]) > 0.5
-        if is_along and link.carries_workpiece and -high[axis] <= origin[axis] <= -low[axis]:
-            least, most = link.range
-            found = f"{_pair(least, most)}, {away:.0f} mm away from the table"
-            meant = f"is it {_pair(-most, -least)}?"
-            expected = f"readings that move the tool relative to the workpiece; {meant}"
-            yield BadValue(f"axis.{link.name}.range", found, expected)
+    for name in chain.linear_axes:
+        link = chain.link(name)
+        low_end, high_end = np.sort(np.negative(link.range) * link.direction[axis])
+        is_mirrored = low_end - FARTHEST_TABLE <= origin[axis] <= high_end + FARTHEST_TABLE
+        if link.carries_workpiece and abs(link.direction[axis]) > 0.5 and is_mirrored:
+            found = f"{_pair(*link.range)}, {away:.0f} mm from the table"
+            meant = _pair(-link.range[1], -link.range[0])
+            expected = f"readings that move the tool relative to the workpiece; is it {meant}?"
+            yield BadValue(f"axis.{name}.range", found, expected)
             return
     found = f"{_list(origin)}, {away:.0f} mm beyond the travel along {'XYZ'[axis]}"
     yield BadValue(
