@@ -262,23 +262,11 @@ def parsed_model(
     others = list(_of_others(table, effects, seen))
     if len(seen) != 1:
         return whole.without(others)
-    is_known = seen[0].fingerprint in table.source.learnt_from
-    repeated, refuted = judged_laws(model, whole.estimates.mean, others, seen[0], is_known)
+    learnt_in = "" if seen[0].fingerprint in table.source.learnt_from else table.source.run
+    repeated, refuted = judged_laws(model, whole.estimates.mean, others, seen[0], learnt_in)
     names = {one.effect.name for one in repeated}
     rest = [one for one in others if one.effect.name not in names]
-    doubted = [
-        EffectOfOtherRun(
-            effect=law,
-            owner="machine",
-            inner=entry.inner,
-            run=table.source.run,
-            share=0.0,
-            is_refuted=True,
-        )
-        for entry, law in zip(table.effect, effects, strict=True)
-        if law in refuted
-    ]
-    return replace(whole, repeated=repeated).without(rest).doubting(doubted)
+    return replace(whole, repeated=repeated).without(rest).doubting(refuted)
 
 
 def _check_hash(source: SourceEntry, chain: Chain, path: str | Path) -> None:

@@ -43,8 +43,8 @@ def _largest(law: Law, model: Model) -> float:
 
 
 def judged_laws(
-    model: Model, theta: Array, left_out: Sequence[EffectOfOtherRun], run: Run, is_known: bool
-) -> tuple[tuple[EffectOfOtherRun, ...], tuple[Law, ...]]:
+    model: Model, theta: Array, left_out: Sequence[EffectOfOtherRun], run: Run, learnt_in: str
+) -> tuple[tuple[EffectOfOtherRun, ...], tuple[EffectOfOtherRun, ...]]:
     """What the touches of a run say of laws that were learnt from another one.
 
     Set-ups and model are fitted to them with the laws as they were learnt. A law that belongs to
@@ -56,7 +56,7 @@ def judged_laws(
         model: With all laws.
         theta: Its estimates, (P,), base units.
         left_out: Effects of other runs.
-        is_known: Whether the model has learnt from this run, too: nothing in it is doubted.
+        learnt_in: Run that the model was learnt from; "" where that is this one, which doubts none.
 
     Returns:
         Those of them that this run shows, and laws of the machine that it speaks against.
@@ -65,12 +65,12 @@ def judged_laws(
     names = {one.effect.name for one in left_out}
     own = [law for law in map(law_of, model.effects) if law and not law.is_margin]
     lasting = [law for law in own if law.name not in names]
-    if not bound and (is_known or not lasting):
+    if not bound and not (learnt_in and lasting):
         return (), ()
     kept = (e for e in model.effects if law_of(e) is None and e.name not in names)
     others = Model(model.chain, tuple(kept))
     run = with_commanded(run)
-    shown, refuted = list[EffectOfOtherRun](), list[Law]()
+    shown, refuted = list[EffectOfOtherRun](), list[EffectOfOtherRun]()
 
     def moved(law: Effect) -> Array:
         here = theta[[effect is law for effect, _ in model.parameters]]
@@ -80,10 +80,19 @@ def judged_laws(
         added = {law.name: moved(law) for law in lasting}
         known = np.sum([np.zeros(len(run)), *added.values()], axis=0)
         least = fit_beside(known, run, others)
-        for law in () if is_known else lasting:
+        for law in lasting if learnt_in else ():
             tried = fit_beside(known - added[law.name], run, others, least.gross)
             if log_odds(tried, least, 0.0) > DECIDED:
-                refuted.append(law)
+                refuted.append(
+                    EffectOfOtherRun(
+                        effect=law,
+                        owner="machine",
+                        inner={},
+                        run=learnt_in,
+                        share=0.0,
+                        is_refuted=True,
+                    )
+                )
                 known, least = known - added[law.name], tried
         for one in bound:
             tried = fit_beside(known + moved(one.effect), run, others)
