@@ -110,7 +110,10 @@ def search_law(space: Space, ground: Ground, policy: LawPolicy) -> Searched:
     found: list[Candidate] = []
     for f in _worth(one, two, MIN_SHARE_SINGLE, TOP_SINGLES):
         found += single_formulas(space, grids, f.bearer, f.drivers[0], 4)
-    found += _rough(space, grids)
+    rough = _rough(space, grids)
+    if has_products:
+        found += [*_modulated(space, grids, rough), *_modulated(space, grids, found)]
+    found += rough
     best = max((c.score for c in found), default=-np.inf)
     if has_products and best < one[0].evidence + CLEAR_EVIDENCE:
         for f in _worth(one, two, MIN_SHARE_SINGLE, TOP_SQUARES):
@@ -126,9 +129,10 @@ def search_law(space: Space, ground: Ground, policy: LawPolicy) -> Searched:
     near = [one for hope, one in zip(hoped, promising, strict=True) if hope > least]
     hopeful = [c for score, c in near if score + REFINING * _gain(c, space) > policy.min_score]
     polished = [refined(space, field, c) for c in hopeful] or [c for _, c in near[:1]]
+    polished += [refined(space, field, c) for c in _at_other_carriers(space, field, polished)]
     polished = _at_best_places(space, field, polished)
     polished += _with_edges(space, field, polished)
-    polished = [_charged(c, field, policy) for c in polished]
+    polished = [_charged(c, field, policy) for c in _distinct(polished)]
     drifts = [f for f in one if f.drivers[0].name == DRIFT][:1]
     beside = [f for f in drifts if all(f is not other for other in one[:3])]
     curves = _curves(space, field, [*one[:3], *beside], polished, policy)
@@ -203,13 +207,18 @@ def _gaining(two: Sequence[Found], one: Sequence[Found]) -> list[Found]:
 
 
 def _rough(space: Space, grids: Grids) -> list[Candidate]:
-    """Shapes that no curve shows, alone and with a size that depends on a second variable."""
+    """Shapes that no curve shows."""
     field = grids.field
-    out: list[Candidate] = []
-    for r in rough_shapes(space, field, ROUGH):
-        part = Part(Factor(SHAPES[r.word], r.driver), r.places)
-        out.append(candidate(space, field, r.bearer, [part]))
-    for one in sorted(out, key=lambda c: -c.score)[:MODULATED]:
+    return [
+        candidate(space, field, r.bearer, [Part(Factor(SHAPES[r.word], r.driver), r.places)])
+        for r in rough_shapes(space, field, ROUGH)
+    ]
+
+
+def _modulated(space: Space, grids: Grids, found: Sequence[Candidate]) -> list[Candidate]:
+    """The best laws of one shape, with a size that depends on a second variable."""
+    field, out = grids.field, list[Candidate]()
+    for one in sorted(found, key=lambda c: -c.score)[:MODULATED]:
         part = _part(one.law, 0)
         C = spread(one.bearer.C, columns_of(field, space, [part]))
         driver, gain = modulations(space, field, C)[0]
@@ -222,6 +231,16 @@ def _rough(space: Space, grids: Grids) -> list[Candidate]:
                 candidate(space, field, one.bearer, [part, other]) for other, _, _ in ranked[:4]
             ]
     return out
+
+
+def _at_other_carriers(space: Space, field: Field, found: Sequence[Candidate]) -> list[Candidate]:
+    """The best law at the carriers that come next: not each of them had its formulas."""
+    best = max(found, key=lambda c: c.score, default=None)
+    if best is None:
+        return []
+    parts = [_part(best.law, i) for i in range(len(best.law.factors))]
+    others = [candidate(space, field, b, parts) for b in field.bearers if b is not best.bearer]
+    return sorted(others, key=lambda c: -c.score)[:PER_DRIVER]
 
 
 def _distinct(found: Sequence[Candidate]) -> list[Candidate]:

@@ -561,3 +561,16 @@ def test_products_and_plateaus_are_found(seed, label, family) -> None:
     model = ordinary_model(run.touches.chain)
     true = np.median(free.u) * fit_run(free, model).noise.chi2_ratio ** 0.5
     assert second_run(found, second).learnt < 1.1 * true
+
+
+@pytest.mark.slow
+def test_a_product_that_gross_errors_hid_is_found_beside_another_law() -> None:
+    """The 21 touches of the gate stand out as chips; its step makes a smooth surface fail."""
+    rng = np.random.default_rng([1, 3])
+    *texts, _ = law_case(rng, "fork", "relaxing+gate")
+    run, second, free = (read_back(text, MACHINES["fork"]) for text in texts)
+    found = learn_laws(run)
+    variables = [{f.driver.name for f in one.law.factors} for one in found.laws]
+    assert variables == [{"since-setup"}, {"X", "Y"}]
+    true = error_left(fit_beside(0.0, free, ordinary_model(free.touches.chain)))
+    assert second_run(found, second).learnt < 1.1 * true
