@@ -35,6 +35,7 @@ from matstd.artefact.hidden import (
     measured_together,
     possible_places,
     scanned,
+    showing_poses,
     showing_touches,
     touched,
 )
@@ -47,7 +48,7 @@ from matstd.artefact.layout import (
     wavy_face,
     with_spheres,
 )
-from matstd.artefact.place import balls_beside, left_unknown
+from matstd.artefact.place import balls_beside, left_unknown, showing_table_poses
 from matstd.artefact.reach import joined, spread_poses
 from matstd.artefact.worth import (
     BallPlaces,
@@ -66,6 +67,8 @@ from matstd.twin.numbers import rms
 from matstd.twin.units import DEG, UM
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
+_ON_BALL = 12  # touches of a ball by which table poses are compared
+_TRIED_POSES = 12  # of these
 HEAD = "field 40 mm: X Y Z         25 mm: X Y Z         bumps 40 mm: X Y Z     20 mm: X Y Z"
 
 
@@ -91,31 +94,49 @@ class Bench:
             brief.population,
         )
         possible = poses_within(brief.chain, brief.rotary, max(poses, 8))
-        self.possible = possible
-        self.poses = spread_poses(possible, poses)
+        self.possible, self.count = possible, poses
         self.balls: BallPlaces = ball_places(self.criterion, brief.blank, possible, rng)
         self.places = possible_places(
-            brief.reach, self.criterion.volume, self.poses, np.random.default_rng(1)
+            brief.reach, self.criterion.volume, possible, np.random.default_rng(1)
         )
 
-    def some(self, body: Standard, count: int) -> Measurement:
-        """The touches on a body that show most, spread over balls and squares of 40 mm."""
-        grid, noise = sphere_grid(60), self.brief.noise
-        lots = [(s.name, each_at(s, grid, self.poses)) for s in body.spheres]
+    def poses(self, body: Standard) -> Array:
+        """The table poses at which the one face of a body shows most, or else its balls."""
+        if not self.chosen:
+            return spread_poses(self.possible, self.count)
+        here, nothing = self.criterion.on(body), self.possible[:0]
+        balls = [each_at(s, sphere_grid(_ON_BALL), nothing) for s in body.spheres]
+        given = touched(joined(balls), self.brief.noise)
+        if len(body.patches) == 1:
+            return showing_table_poses(here, body, given, self.possible, self.places, self.count)
+        some = spread_poses(self.possible, _TRIED_POSES)
+        lots = []
+        for pose in some:
+            lot = joined([each_at(s, sphere_grid(_ON_BALL), pose[None]) for s in body.spheres])
+            lots.append(touched(lot[self.brief.reach.is_reachable(lot)], self.brief.noise))
+        return some[showing_poses(here, given, lots, self.places, self.count)]
+
+    def some(self, body: Standard, count: int, poses: Array) -> Measurement:
+        """The touches on a body that show most, spread over balls and squares of 40 mm.
+
+        Those on faces have room for the probe; the balls are spared this, 49 stand close.
+        """
+        grid, noise, reach = sphere_grid(60), self.brief.noise, self.brief.reach
+        lots = [(s.name, each_at(s, grid, poses)) for s in body.spheres]
         for face in body.patches:
             for part, uv in squares(face):
-                lots.append((f"{face.name}.{part}", each_at(face, uv, self.poses)))
+                lots.append((f"{face.name}.{part}", each_at(face, uv, poses)))
         tried = joined([lot for _, lot in lots])
         area = np.repeat(np.arange(len(lots)), [len(lot) for _, lot in lots])
-        kept = self.brief.reach.is_reachable(tried)
-        tried, area = tried[kept], area[kept]
+        on_face = np.isin(tried.feature, [face.name for face in body.patches])
+        kept = reach.is_reachable(tried)
+        kept[kept & on_face] = reach.has_room(body, tried[kept & on_face])
+        tried, area, on_face = tried[kept], area[kept], on_face[kept]
         if not self.chosen:
             order = np.random.default_rng(2).permutation(len(tried))[:count]
             return touched(tried[order], noise)
         first, at = np.unique(tried.point, axis=0, return_index=True, return_inverse=True)[1:]
-        form = self.criterion.calibration.form * np.isin(
-            tried.feature, [face.name for face in body.patches]
-        )
+        form = self.criterion.calibration.form * on_face
         may = replace(touched(tried, noise), u=np.hypot(noise, form))
         rows = showing_touches(
             self.criterion.on(body), touched(tried[:0], noise), may, self.places, count,
@@ -190,9 +211,7 @@ def main() -> None:
     args = parser.parse_args()
     brief = read_project(EXAMPLES / f"{args.project}.toml")
     bench = Bench(brief, args.poses, args.touches, args.form_um * UM, not args.at_random)
-    print(
-        f"{brief.chain.name}, {len(bench.poses)} table poses, {args.touches} touches: signal;power"
-    )
+    print(f"{brief.chain.name}, {bench.count} table poses, {args.touches} touches: signal;power")
     print(f"{'':42s} {HEAD}")
     bodies = {}
     for count in (13, 25, 49):
@@ -203,13 +222,14 @@ def main() -> None:
             places = replace(places, fits=apart > 2.0 * brief.blank.fittings.sphere_radius)
         balls = places.best(count, args.touches)
         bodies[count] = body = with_spheres(brief.blank, [b.centre for b in balls])
-        bench.show(f"{len(balls)} balls", body, bench.some(body, args.touches))
+        bench.show(f"{len(balls)} balls", body, bench.some(body, args.touches, bench.poses(body)))
     body, half = bodies[13], args.touches // 2
     faces = small_faces(bench, body)
     pads = tuple(face.mean_plane() for face in faces)
     for name, some in (("small faces", faces), ("flat pads there", pads)):
         both = replace(body, patches=some)
-        bench.show(f"13 balls + {len(some)} {name}", both, bench.some(both, args.touches))
+        touches = bench.some(both, args.touches, bench.poses(body))
+        bench.show(f"13 balls + {len(some)} {name}", both, touches)
     limits = replace(brief.blank.limits, max_slope=60.0 * DEG, min_concave_radius=args.radius)
     bench.brief = brief = replace(brief, blank=replace(brief.blank, limits=limits))
     side = (0.5 * args.size, 0.5 * args.size)
@@ -224,10 +244,13 @@ def main() -> None:
     bare = replace(body, patches=())
     for name, one in (("plane", face.mean_plane()), ("wavy face", face)):
         both = replace(body, patches=(one,))
-        bench.show(f"13 balls + {name}, touched", both, bench.some(both, args.touches))
-        on_balls = bench.some(bare, half)
+        poses = bench.poses(both)
+        print(f"table poses: {np.round(poses / DEG).tolist()}")
+        touches = bench.some(both, args.touches, poses)
+        bench.show(f"13 balls + {name}, touched", both, touches)
+        on_balls = bench.some(bare, half, poses)
         scan = Scan(between=args.lines)
-        lines = scanned(one, scan, bench.poses, brief.reach, both)
+        lines = scanned(one, scan, poses, brief.reach, both)
         words = f"{scan.points(one)} points, {scan.minutes(one):.0f} min"
         bench.show(
             f"13 balls + {name}, scanned, {words}", both, measured_together([on_balls, lines])

@@ -17,7 +17,7 @@ from matstd.artefact.hidden.smooth_effects import (
     possible_places,
     touched,
 )
-from matstd.artefact.hidden.touches_that_show import showing_touches
+from matstd.artefact.hidden.touches_that_show import showing_poses, showing_touches
 
 __all__ = [
     "SIZE",
@@ -30,6 +30,7 @@ __all__ = [
     "measured_together",
     "possible_places",
     "scanned",
+    "showing_poses",
     "showing_touches",
     "touched",
     "write_scan_path",

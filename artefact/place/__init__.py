@@ -9,7 +9,7 @@ from matstd.artefact.place.family import CLEAR_LEAD, Family, FamilyFigures, scor
 from matstd.artefact.place.identifying import left_unknown
 from matstd.artefact.place.placement import Placement, design_standard
 from matstd.artefact.place.proving import proving_touches
-from matstd.artefact.place.wavy_proof import scan_poses
+from matstd.artefact.place.wavy_proof import showing_table_poses
 
 __all__ = [
     "CLEAR_LEAD",
@@ -20,6 +20,6 @@ __all__ = [
     "design_standard",
     "left_unknown",
     "proving_touches",
-    "scan_poses",
     "score_of",
+    "showing_table_poses",
 ]

@@ -8,6 +8,7 @@ from matstd.artefact.body import Standard, check
 from matstd.artefact.brief import Brief, PlacementOptions
 from matstd.artefact.compare import Rival
 from matstd.artefact.hidden import hidden_power, possible_places
+from matstd.artefact.hidden import touched as single
 from matstd.artefact.place.body_choice import BodyChoice
 from matstd.artefact.place.family import Family, FamilyFigures, chosen_family, flat_pads
 from matstd.artefact.place.identifying import (
@@ -23,9 +24,10 @@ from matstd.artefact.place.proving_balls import balls_alone, proving_on_balls
 from matstd.artefact.place.wavy_choice import PROOF_POSES, wavy_choice
 from matstd.artefact.place.wavy_proof import (
     PLACES_PER_TOUCH,
+    SCAN_POSES,
     measurement_on,
-    scan_poses,
     showing_on_body,
+    showing_table_poses,
 )
 from matstd.artefact.price import prices_of
 from matstd.artefact.reach import Requests, joined, spread_poses
@@ -43,6 +45,7 @@ class Built:
     family: Family
     found: Identifying
     proof: Requests
+    scan_poses: Array  # at which a wavy face is scanned, (K, R), rad; none of other families
 
     @property
     def standard(self) -> Standard:
@@ -144,32 +147,37 @@ def _built(site: Site, family: Family, like: Built | None = None) -> Built:
         on_faces = touches_on_faces(reach, found.standard, found.poses, count)
     here = site.criterion.on(found.standard)
     chosen = found.tried[found.chosen]
-    return Built(family, found, proving_touches(here, found.standard, on_faces, chosen, count))
+    proof = proving_touches(here, found.standard, on_faces, chosen, count)
+    return Built(family, found, proof, found.poses[:0])
 
 
 def _showing(site: Site, family: Family) -> Built:
     """Balls alone, or round one wavy face: touched where that shows most."""
-    criterion, count = site.criterion, site.options.choice.proof
+    criterion, options, count = site.criterion, site.options, site.options.choice.proof
     if family is Family.WAVY:
         found = wavy_choice(
             criterion,
             site.places,
             site.bases[0],
             site.all_poses,
-            site.options,
+            options,
             site.effects_at,
             site.best_balls,
             np.random.default_rng(site.brief.seed),
         )
-        body, poses = found.standard, spread_poses(found.poses, PROOF_POSES)
+    else:
+        found = balls_alone(criterion, site.places, site.bases, options)
+    body, poses = found.standard, found.poses
+    here = criterion.plain.on(body)
+    given = single(found.tried[found.chosen], criterion.noise)
+    if family is Family.WAVY:
+        poses = showing_table_poses(here, body, given, poses, site.effects_at, PROOF_POSES)
         tried = touches_on_faces(criterion.reach, body, poses, count, PLACES_PER_TOUCH)
     else:
-        found = balls_alone(criterion, site.places, site.bases, site.options)
-        body, poses = found.standard, spread_poses(found.poses, PROOF_POSES)
-        tried = proving_on_balls(criterion, body, poses, count)
-    given = measurement_on(criterion, body, found.tried[found.chosen], None)
-    here = criterion.plain.on(body)
-    return Built(family, found, showing_on_body(here, body, tried, given, site.effects_at, count))
+        tried = proving_on_balls(criterion, body, spread_poses(poses, PROOF_POSES), count)
+    proof = showing_on_body(here, body, tried, given, site.effects_at, count)
+    scans = family is Family.WAVY and options.scan is not None
+    return Built(family, found, proof, poses[: SCAN_POSES if scans else 0])
 
 
 def _flat(site: Site, like: Built | None) -> Identifying:
@@ -196,12 +204,11 @@ def _figures(site: Site, one: Built) -> FamilyFigures:
     criterion, body = site.criterion, one.standard
     scan = site.options.scan if one.family is Family.WAVY else None
     touches = joined([one.requests, one.proof])
-    measured = measurement_on(criterion, body, touches, scan)
+    measured = measurement_on(criterion, body, touches, scan, one.scan_poses)
     power = hidden_power(criterion.plain.on(body), measured, site.effects_at)
     least = power.effects[power.worst]
     left = left_unknown(criterion, body, one.requests)
-    poses = len(scan_poses(touches))
-    scanning = 0.0 if scan is None else poses * sum(scan.minutes(face) for face in body.patches)
+    once = 0.0 if scan is None else sum(scan.minutes(face) for face in body.patches)
     prices = [price.total for price in prices_of(body)]
     return FamilyFigures(
         family=one.family,
@@ -211,7 +218,7 @@ def _figures(site: Site, one: Built) -> FamilyFigures:
         power=float(power.power[power.worst]),
         least=(least.is_bump, least.width, least.direction),
         touches=len(touches),
-        scan_minutes=scanning,
+        scan_minutes=once * len(one.scan_poses),
         price=min(prices, key=lambda price: price.value, default=None),
         scan_points=0 if scan is None else sum(scan.points(face) for face in body.patches),
     )

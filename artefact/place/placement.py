@@ -77,6 +77,7 @@ class Placement:
     # model
     power_of_balls: Power
     power_exact: Power  # as `power`, with exactly known positions of the faces
+    scan_poses: Array  # table poses at which the face is scanned, (K, R), rad; none without a scan
     family: Family = Family.FACES  # features that prove
     families: tuple[FamilyFigures, ...] = ()  # figures of every family that was tried
     goal: Goal = "prove"  # what decided between them
@@ -159,6 +160,7 @@ def design_standard(
         power_in_volume=powers[1],
         power_of_balls=powers[2],
         power_exact=powers[3],
+        scan_poses=built.scan_poses,
         family=built.family,
         families=families,
         goal=options.goal,

@@ -20,7 +20,13 @@ from matstd.artefact.layout import Blank, Wave, wavy_face, with_spheres
 from matstd.artefact.place.body_choice import balls_beside
 from matstd.artefact.place.family import MOST_COST
 from matstd.artefact.place.identifying import Base, Identifying, left_unknown
-from matstd.artefact.place.wavy_proof import PLACES_PER_TOUCH, measurement_on, showing_on_body
+from matstd.artefact.place.wavy_proof import (
+    PLACES_PER_TOUCH,
+    SCAN_POSES,
+    measurement_on,
+    showing_on_body,
+    showing_table_poses,
+)
 from matstd.artefact.reach import Requests, spread_poses
 from matstd.artefact.worth import (
     BallPlaces,
@@ -182,7 +188,10 @@ def _signal(
     touches = showing_on_body(here, body, tried, on_balls, effects_at, count)
     # the balls are those of another body, some of them within the face
     alone = replace(body, spheres=())
-    lots = [on_balls, measurement_on(criterion, alone, touches, options.scan)]
+    at = poses[:0]
+    if options.scan is not None:
+        at = showing_table_poses(here, alone, on_balls, poses, effects_at, SCAN_POSES)
+    lots = [on_balls, measurement_on(criterion, alone, touches, options.scan, at)]
     return hidden_power(here, measured_together(lots), effects_at, False).least_signal
 
 

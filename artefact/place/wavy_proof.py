@@ -1,4 +1,4 @@
-"""Touches that prove where they show unmodelled effects best, spread over squares or balls."""
+"""Touches and table poses that prove where they show unmodelled effects best."""
 
 from dataclasses import replace
 
@@ -10,6 +10,7 @@ from matstd.artefact.hidden import (
     Scan,
     measured_together,
     scanned,
+    showing_poses,
     showing_touches,
 )
 from matstd.artefact.hidden import touched as single
@@ -22,25 +23,50 @@ SQUARE_SIDE = 40.0
 """Side of the squares of a face that get equal shares, mm: the width of the widest effect."""
 
 PLACES_PER_TOUCH = 4.0  # places on a wavy face from which each touch is chosen
-_SCAN_POSES = 3  # table poses at which a face is scanned, where the machine has several
+SCAN_POSES = 3  # table poses at which a face is scanned, where the machine has several
+_TRIED_POSES = 10  # table poses of which those that show most are chosen
+_TRIED_SCAN = Scan(between=16.0)  # by which they are compared: a quarter of the means of a scan
 _MOST_TRIED = 3000  # possible touches that are compared: 2 s for 150 of them
 
 
 def measurement_on(
-    criterion: Criterion, standard: Standard, touches: Requests, scan: Scan | None
+    criterion: Criterion, standard: Standard, touches: Requests, scan: Scan | None, at: Array
 ) -> Measurement:
-    """Touches, and the scan of the face where the control can."""
+    """Touches, and the scan of the face at some table poses (K, R), rad, where the control can."""
     lots = [single(touches, criterion.noise)]
     if scan is not None:
-        some = scan_poses(touches)
-        reach, faces = criterion.reach, standard.patches
-        lots += [scanned(face, scan, some, reach, standard) for face in faces]
+        lots += [scanned(face, scan, at, criterion.reach, standard) for face in standard.patches]
     return measured_together([lot for lot in lots if len(lot)])
 
 
-def scan_poses(touches: Requests) -> Array:
-    """Table poses at which a face is scanned: a few of those of the touches, (K, R), rad."""
-    return spread_poses(np.unique(touches.rotary, axis=0), _SCAN_POSES)
+def showing_table_poses(
+    criterion: Criterion,
+    standard: Standard,
+    given: Measurement,
+    poses: Array,
+    effects_at: Array,
+    count: int,
+) -> Array:
+    """Table poses at which a scan of the one face of a standard shows most, the best first.
+
+    Where the table is tilted the probe has room at few places of a face: poses at which it has
+    half as many as at the best one are left out.
+
+    Args:
+        criterion: On the standard.
+        given: Measurements that will be made whatever is chosen.
+        poses: To choose from, (K, R), rad.
+        effects_at: Where bumps may be, readings of the linear axes, (K, 3), mm.
+    """
+    if len(poses) < 2:
+        return poses
+    (face,), reach = standard.patches, criterion.reach
+    room = np.array(
+        [len(scanned(face, _TRIED_SCAN, pose[None], reach, standard)) for pose in poses]
+    )
+    tried = spread_poses(poses[2 * room >= room.max()], _TRIED_POSES)
+    lots = [scanned(face, _TRIED_SCAN, pose[None], reach, standard) for pose in tried]
+    return tried[showing_poses(criterion, given, lots, effects_at, count)]
 
 
 def showing_on_body(

@@ -17,7 +17,7 @@ from matstd.artefact.certify import like_task, that_prove
 from matstd.artefact.compare import WorstRegions, identifiability_report, worst_regions
 from matstd.artefact.feasibility import check_beside, check_seat, feasibility
 from matstd.artefact.hidden import write_scan_path
-from matstd.artefact.place import Family, Placement, design_standard, scan_poses
+from matstd.artefact.place import Placement, design_standard
 from matstd.artefact.price import Construction
 from matstd.cad_out.details import details_of
 from matstd.cad_out.making import Stiffness, making_of, stiffness_of, with_sag, write_making
@@ -103,8 +103,8 @@ def _made(
     placement, stiffness = _with_sag(placement, brief.down)
     _check_first_mode(brief, stiffness)
     plans = _plans(brief, placement)
-    if placement.family is Family.WAVY and brief.options.scan is not None:
-        standard, at = placement.standard, scan_poses(placement.touches)
+    if brief.options.scan is not None and len(placement.scan_poses):
+        standard, at = placement.standard, placement.scan_poses
         path, scan = folder / "scan_path.csv", brief.options.scan
         write_scan_path(path, standard.patches[0], scan, at, brief.reach, standard)
     making = making_of(placement.standard, stiffness)

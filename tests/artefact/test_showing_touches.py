@@ -1,27 +1,37 @@
 """Touches that show unmodelled effects best: against the signals of whole sets."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from matstd.artefact.hidden import (
+    Scan,
     hidden_effects,
     hidden_power,
     measured_together,
     possible_places,
+    scanned,
+    showing_poses,
     showing_touches,
     touched,
 )
 from matstd.artefact.hidden.touches_that_show import _Choice
 from matstd.artefact.layout import Blank, Wave, wavy_face
-from matstd.artefact.place.wavy_proof import showing_on_body, square_of
-from matstd.artefact.worth import Calibration, each_at, face_grid
+from matstd.artefact.place.wavy_proof import showing_on_body, showing_table_poses, square_of
+from matstd.artefact.reach import ProbeReach, ProbeShape
+from matstd.artefact.worth import Calibration, criterion_for, each_at, face_grid
 from matstd.artefact.worth.touch_choice import touches_at
+from matstd.sensitivity.first_order import Workspace
+from matstd.sensitivity.population import Population
 from matstd.twin.errors import NotReachable
+from matstd.twin.files import read_machine
+from matstd.twin.record import Setup
 from matstd.twin.units import DEG, UM
 
 POSE = np.array([[0.0]])
+MACHINE = Path(__file__).parents[2] / "examples" / "hsm600u-machine.toml"
 
 
 @pytest.fixture(scope="module")
@@ -69,6 +79,42 @@ def test_chosen_touches_show_more_than_even_ones(scene):
     assert len(np.unique(chosen.point, axis=0)) == 30
     area = np.bincount(square_of(body.patches[0], chosen.point), minlength=9)
     assert area.max() <= 4  # nine squares of 40 mm, 30 touches
+
+
+def test_chosen_lots_are_those_whose_whole_measurement_shows_most(scene):
+    """Sums of products against the test of all touches solved anew, lot after lot."""
+    here, _, tried, given, at = scene
+    order = np.argsort(tried.normal[:, 2])  # the steepest first
+    lots = [touched(tried[rows], UM) for rows in (order[60:90], order[-12:], order[:30])]
+
+    def unseen(numbers):
+        some = measured_together([given, *(lots[k] for k in numbers)])
+        return np.sum(1.0 / hidden_power(here, some, at, with_power=False).signal ** 2)
+
+    first, second = showing_poses(here, given, lots, at, 2)
+    assert unseen([first]) == min(unseen([k]) for k in range(3))
+    assert unseen([first, second]) == min(unseen([first, k]) for k in range(3) if k != first)
+    assert showing_poses(here, given, lots[:2], at, 3) == [0, 1]
+
+
+def test_a_face_is_scanned_where_the_table_does_not_hide_it(scene):
+    """Poses with room at half as many places as the best one has, each once."""
+    _, body, _, given, _ = scene
+    chain = read_machine(MACHINE)
+    reach = ProbeReach(chain, Setup("a"), ProbeShape(3.0, ((80.0, 2.0), (160.0, 25.0))), 160.0)
+    volume, model = Workspace(chain, {}, 160.0), Population(chain).model
+    here = criterion_for(reach, model, Blank(), volume, UM, np.random.default_rng(4)).on(body)
+    poses = np.column_stack([np.zeros(5), np.array([-90.0, -75.0, -20.0, 0.0, 10.0]) * DEG])
+    given = touched(replace(given.touches, rotary=np.tile(poses[3], (len(given), 1))), UM)
+    at = possible_places(reach, here.volume, poses, np.random.default_rng(1))
+    chosen = showing_table_poses(here, body, given, poses, at, 3)
+    seen = [len(scanned(body.patches[0], Scan(), p[None], reach, body)) for p in poses]
+    assert min(seen) < 0.4 * max(seen)
+    rows = [int(np.flatnonzero((poses == p).all(axis=1))[0]) for p in chosen]
+    assert len(set(rows)) == 3
+    assert min(np.take(seen, rows)) > 0.4 * max(seen)
+    alone = showing_table_poses(here, body, given, poses[:1], at, 3)
+    np.testing.assert_array_equal(alone, poses[:1])
 
 
 def test_areas_with_too_few_places_leave_their_share_to_others(scene):
