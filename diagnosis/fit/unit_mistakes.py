@@ -76,7 +76,9 @@ def _mistaken(fit: Fit, measured: float, expected: float, stated: float) -> Mist
     has_ball = fit.run.touches.instrument.is_ball_on_standard
     if measured == 0.0:
         return None
-    if measured > MIN_LARGE_RATIO * np.hypot(expected, min(stated, COARSEST)):
+    # where no axis moves, what is expected of the machine is no yardstick
+    is_expected = expected > FINEST
+    if is_expected and measured > MIN_LARGE_RATIO * np.hypot(expected, min(stated, COARSEST)):
         both = stated > COARSEST
         return MistakenUnit.BOTH_IN_NM if both else MistakenUnit.DEVIATIONS_IN_NM
     if MIN_SMALL_RATIO * measured < expected and measured < MIN_SCATTER_RATIO * stated:

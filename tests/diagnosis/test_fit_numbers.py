@@ -10,7 +10,7 @@ import pytest
 from marks import slow
 
 from matstd.diagnosis.accuracy import repeatability
-from matstd.diagnosis.fit import fit_run
+from matstd.diagnosis.fit import fit_run, unit_mistake
 from matstd.diagnosis.regression import left_out, places_of, replicate_factor, solve
 from matstd.diagnosis.remarks import What, noticed, remarks
 from matstd.importers import one_axis_machine, positioning_run
@@ -275,6 +275,8 @@ def test_a_drift_between_replicates_is_no_repeatability() -> None:
     pooled = np.sqrt(deviation.reshape(triplets, 3).var(axis=1, ddof=1).mean())
     assert factor * 2.0 * UM == pytest.approx(pooled, rel=SIGMAS / np.sqrt(2.0 * dof))
     assert dof == int(2 * 800**2 / (3 * 800 - 400))  # chains of two differences
+    # no axis moves, so the machine is expected to be off by nothing: no hint at another unit
+    assert unit_mistake(fit_run(run, ordinary_model(run.touches.chain))) is None
 
 
 def test_steady_readings_show_their_noise_while_they_drift() -> None:
