@@ -15,6 +15,7 @@ from matstd.diagnosis.evidence import (
     EffectSet,
     Grid,
     ScaledEffect,
+    addition,
     period_of,
     score_all,
     signatures,
@@ -36,6 +37,8 @@ MAX_REFINED = 200  # most periods that are refined
 SCANS = 6
 """Scans, each four times finer: alike are periods that agree to a part of their uncertainty."""
 
+FINER_BEYOND = 4.0  # periods beyond the scanned ones that are tried to one within them
+
 MAX_UNEVENNESS = 0.02  # largest distance of a target from an even grid, as a share of its step
 MAX_FRACTION = 8  # whole fractions of a stated pitch that are preferred to other periods
 
@@ -53,6 +56,9 @@ class Alike:
     # speaks for the named one
     pitch: float | None
     is_harmonic: bool = False
+    # periods longer than the scanned ones that explain as much, mm, the longest first: named by no
+    # search, but not excluded by the run
+    beyond: tuple[float, ...] = ()
 
     @property
     def periods(self) -> tuple[float, ...]:
@@ -86,20 +92,21 @@ def periods_alike(
     assert is_tunable(found.effect)
     link = complement.touches.chain.link(inner.over)
     best = _best(found.effect, inner, base, link.pitch)
-    if len(best) < 2:
+    beyond = _beyond(found.effect, inner, base)
+    if len(best) < 2 and not beyond:
         return found, None
     taken = [period_value(o.effect) for o in others if period_of(o.effect, complement) is not None]
     best = [b for b in best if all(abs(period_value(b.effect) - t) > 1e-6 * t for t in taken)]
     fraction = [_fraction(period_value(b.effect), link.pitch, inner) for b in best]
     named = int(np.argmin(fraction)) if best else -1
-    if named < 0 or len(best) < 2:
+    if named < 0 or (len(best) < 2 and not beyond):
         return found, None
     is_stated = fraction[named] <= MAX_FRACTION
     q = complement.touches.reading(inner.over)[complement.used]
     rest = tuple(b for i, b in enumerate(best) if i != named)
     pitch = link.pitch if is_stated else None
     step = None if inner.is_harmonic else even_step(q)
-    alike = Alike(inner.over, rest, step, pitch, is_harmonic=inner.is_harmonic)
+    alike = Alike(inner.over, rest, step, pitch, inner.is_harmonic, beyond)
     return best[named], alike
 
 
@@ -135,6 +142,22 @@ def _best(
         if not out or _apart(out[-1].effect, s.effect, inner):
             out.append(s)
     return out
+
+
+def _beyond(effect: Tunable, inner: Inner, base: EffectSet) -> tuple[float, ...]:
+    """Periods from the longest scanned one up to the travel that explain as much, longest first."""
+    travel = float(np.ptp(base.complement.touches.reading(inner.over)[base.complement.used]))
+    longest = float(np.max(inner.grid))
+    if inner.is_harmonic or travel <= longest:
+        return ()
+    own, _ = addition(base, effect)
+    step = _frequency_step(inner) / FINER_BEYOND
+    frequencies = np.arange(1.0 / longest - step, 1.0 / travel, -step)
+    gained = np.array([addition(base, effect.tuned(float(1.0 / f)))[0] for f in frequencies])
+    padded = np.concatenate([[np.inf], gained, [-np.inf]])  # what rises to the scan is in it
+    is_peak = (gained >= padded[:-2]) & (gained > padded[2:])
+    close = gained > own - POLICY.log_odds_alike
+    return tuple(float(p) for p in (1.0 / frequencies[is_peak & close])[::-1])
 
 
 def _apart(first: Effect, second: Effect, inner: Inner) -> bool:

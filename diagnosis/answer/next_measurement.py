@@ -111,7 +111,7 @@ def plans(
             return task.fit((*added, *heads[:i], rival, *heads[i + 1 :]), gross)
 
         name, alike = heads[i].effect.name, confusion.alike
-        if alike is not None:
+        if alike is not None and alike.others:
             fits = [instead(other) for other in alike.others[:MAX_PERIODS_PLANNED]]
             periods = [f"{p:.4g}" for p in alike.periods[:MAX_PERIODS_PLANNED]]
             own = period_value(heads[i].effect)

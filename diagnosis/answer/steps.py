@@ -97,7 +97,13 @@ def _steps(
     numbers, effects = sizes(task, (*added, *state.effects), gross, task.space(first))
     classes = (*(None for _ in added), *tested.classes)
     out = [Step(effect=None, fit=first, p_value=1.0, reported=(), confusion=None)]
-    for k, (confusion, reported) in enumerate(zip(classes, numbers, strict=True)):
+    for k, (confusion, found) in enumerate(zip(classes, numbers, strict=True)):
+        # among periods that look alike, the uncertainty of one holds for none
+        alike = confusion.alike if confusion is not None else None
+        is_open = alike is not None and alike.pitch is None
+        reported = tuple(
+            replace(n, u=None) if is_open and n.role is Role.INNER else n for n in found
+        )
         effect, fit = effects[k].effect, task.fit(effects[: k + 1], gross)
         if confusion is None:
             p = named_probability(out[-1].fit, fit)

@@ -160,6 +160,7 @@ def _alike(step: Step) -> dict[str, Any]:
         return {"harmonics_alike": [significant(h) for h in alike.periods]}
     return {
         "periods_alike_mm": [significant(p) for p in alike.periods],
+        "periods_beyond_mm": [significant(p) for p in alike.beyond],
         "step_mm": alike.step,
         "pitch_mm": alike.pitch,
     }

@@ -80,6 +80,7 @@ def _alike(step: Step, places: Sequence[float]) -> str:
     alike = step.confusion.alike if step.confusion else None
     if alike is None:
         return ""
+    beyond = [f"{p:.3g}" for p in alike.beyond[:PERIODS_NAMED]]
     most = PERIODS_NAMED if len(alike.periods) > PERIODS_NAMED + 1 else None
     longest = [f"{p:.4g}" for p in alike.periods[:most]]
     more = len(alike.periods) - len(longest)
@@ -89,7 +90,10 @@ def _alike(step: Step, places: Sequence[float]) -> str:
         if more > 0
         else f"{listed(longest, 'or')}{unit}"
     )
-    what_else = f"{'harmonic' if alike.is_harmonic else 'a period of'} {others}"
+    what_else = f"{'harmonic' if alike.is_harmonic else 'a period of'} {others}" if longest else ""
+    if beyond:
+        also = f"{'a period' if not longest else 'one'} of {listed(beyond, 'or')} mm"
+        what_else += f"{', nor from ' if longest else ''}{also}, longer than were searched"
     at = f"with steps of {alike.step:g} mm" if alike.step else "with these targets"
     why = f" (chosen for the stated pitch of {alike.pitch:g} mm)" if alike.pitch else ""
     where = listed([f"{p:g}" for p in places])

@@ -267,3 +267,28 @@ def test_the_true_period_is_named_or_listed_where_targets_are_few_and_uneven() -
     (period,) = step.effect.tuning.values()
     alike = () if step.confusion.alike is None else step.confusion.alike.periods
     assert any(abs(p - 10.0) < 0.05 for p in (period, *alike))
+
+
+def test_a_period_longer_than_the_scanned_ones_is_mentioned_and_none_has_an_uncertainty() -> None:
+    """Eleven targets of a laser over 494 mm and a wave of 100 mm, which is not searched."""
+    targets = np.array([3.0, 53.2, 101.7, 148.9, 203.1, 249.4, 301.8, 352.6, 398.3, 451.9, 497.0])
+    run = positioning(targets, 100.0, 3.0 * UM)
+    (step,) = diagnose(run).steps[1:]
+    assert step.confusion is not None
+    alike = step.confusion.alike
+    assert alike is not None
+    period = next(r for r in step.reported if r.quantity == "period")
+    assert period.u is None
+    assert max(period.value, *alike.periods) < 494.0 / 6.0
+    assert any(abs(p - 100.0) < 2.0 for p in alike.beyond)
+
+    def left(p: float) -> float:
+        """Squared residual of a plain sine beside constant and slope, over that of the noise."""
+        x = run.touches.reading("X")
+        wave = 2.0 * np.pi * x / p
+        A = np.column_stack([np.ones_like(x), x, np.sin(wave), np.cos(wave)])
+        rest = run.deviation - A @ np.linalg.lstsq(A, run.deviation, rcond=None)[0]
+        return float(rest @ rest) / (0.5 * UM) ** 2
+
+    # the true one is at most as far behind as odds of 100 : 1 allow
+    assert left(100.0) - left(period.value) < 2.0 * np.log(100.0)
