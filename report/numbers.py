@@ -3,6 +3,7 @@
 import math
 import re
 
+from matstd.twin.record import Touches
 from matstd.twin.units import DAY, HOUR, MINUTE, UM, URAD
 
 _SPANS = ((DAY, "days", 2.0), (HOUR, "h", 1.5), (MINUTE, "min", 1.5))
@@ -138,6 +139,14 @@ def noun(column: str) -> str:
     return column
 
 
+def pose_word(touches: Touches) -> str:
+    """What a number in the column `pose` counts: table poses, poses, else cycles or places."""
+    if touches.chain.rotary_axes:
+        return "table pose" if touches.chain.turns_workpiece else "pose"
+    is_cycle = all(str(name).startswith("cycle") for name in set(touches.feature.tolist()))
+    return "cycle" if is_cycle else "place"
+
+
 def unit_of(column: str) -> str:
     """Unit of a column of a run file, "" where it has none."""
     if column == "time_s":
@@ -213,13 +222,13 @@ def odds_words(log_odds: float) -> str:
 
     Example:
         >>> odds_words(0.0), odds_words(math.log(25.0)), odds_words(40.0), odds_words(-1.0)
-        ('1 : 1', '25 : 1', '1e12 : 1', '1 : 2.7')
+        ('1 : 1', '25 : 1', '> 1e12 : 1', '1 : 2.7')
     """
     power = abs(log_odds) / math.log(10.0)
-    if power >= _MAX_LOG10:
-        times = f"1e{_MAX_LOG10:.0f}"
-    else:
-        times = digits(10.0**power, 2) if power < 4.0 else f"1e{power:.0f}"
+    if power > _MAX_LOG10:
+        most = f"1e{_MAX_LOG10:.0f}"
+        return f"> {most} : 1" if log_odds > 0.0 else f"< 1 : {most}"
+    times = digits(10.0**power, 2) if power < 4.0 else f"1e{power:.0f}"
     times = times.removesuffix(".0")
     return f"{times} : 1" if log_odds >= 0.0 else f"1 : {times}"
 

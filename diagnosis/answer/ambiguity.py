@@ -128,9 +128,8 @@ def confusion_class(
     names = {found.effect.name, *others}
     rivals = [Rival(found, 0.0, 1.0)]
     own = explained(base, projected(complement, [found]))
-    for variant in _ranked(
-        pool, scores.evidence, min(top, _on_grid(base, found)) - POLICY.log_odds_ruled_out
-    ):
+    least = min(top, _on_grid(base, found)) - POLICY.log_odds_ruled_out
+    for variant in _ranked(pool, scores.evidence, least, base.evidence):
         candidate = pool.variants[variant]
         if candidate.name in names:
             continue
@@ -149,9 +148,15 @@ def _on_grid(base: EffectSet, found: ScaledEffect) -> float:
     return float(score_all(base, signatures(base.complement, grids, 1)).evidence.max())
 
 
-def _ranked(pool: Signatures, evidence: Array, least: float) -> list[int]:
-    """Best variant of every candidate with at least some evidence, most first."""
+def _ranked(pool: Signatures, evidence: Array, least: float, without: float) -> list[int]:
+    """Best variant of every candidate with at least some evidence, most first.
+
+    Args:
+        without: Evidence without any; what explains less, such as lobes of a probe of which every
+            touch has one normal, is no rival however few there are.
+    """
     best = pool.first_of_each(ranked(evidence))
+    best = best[evidence[best] > without]
     close = int(np.count_nonzero(evidence[best] > least))
     return [int(v) for v in (*best[: min(close, MAX_RIVALS)], *best[close : close + LISTED_FAR])]
 

@@ -183,6 +183,9 @@ def _neighbour_pairs(touches: Touches) -> list[tuple[tuple[str, ...], IntArray, 
     near = np.sort(np.column_stack([np.arange(len(label)), index[:, 1]]), axis=1)
     # a touch repeated at one point may come first in its own list: it is no neighbour of itself
     near = np.unique(near[(distance[:, 1] < FEATURE_DISTANCE) & (near[:, 0] < near[:, 1])], axis=0)
-    if len(near):
-        out.append((("px_mm", "py_mm", "pz_mm"), near[:, 0], near[:, 1]))
+    places = ("px_mm", "py_mm", "pz_mm")
+    extents = np.ptp(touches.point, axis=0)
+    names = tuple(p for p, extent in zip(places, extents, strict=True) if extent > 0.0)
+    if len(near) and names:
+        out.append((names, near[:, 0], near[:, 1]))
     return out

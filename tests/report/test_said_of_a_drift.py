@@ -67,3 +67,17 @@ def test_repeatability_is_that_of_successive_readings(found) -> None:
     words = dict(part_lines(found))["repeatability"]
     size = float(words.split(" µm in replicates")[0].rsplit(" ", 1)[1])
     assert size == pytest.approx(np.hypot(0.4, 12.0**-0.5), abs=4.0 * 0.5 / np.sqrt(2.0 * 132))
+
+
+def test_what_cannot_act_is_no_rival(found) -> None:
+    """One axis and one normal: no effect of the probe or the standard explains any of it."""
+    confusion = found.steps[1].confusion
+    assert confusion is not None
+    names = [r.effect.name for r in (*confusion.rivals, *confusion.distinguished)]
+    assert names
+    assert not [name for name in names if name.startswith(("probe-", "stylus-"))]
+    assert "odds 1e12" not in dict(part_lines(found))["named effects"]
+
+
+def test_neighbours_in_what_is_constant_are_not_named(found) -> None:
+    assert not [s for s in found.structure if {"py_mm", "pz_mm"} & set(s.variables)]
