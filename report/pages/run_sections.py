@@ -8,7 +8,7 @@ from matstd.diagnosis.answer import Diagnosis, GroupResidual
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.residual import Region, Structure, has_poses, rank_variables
 from matstd.report.layout import Picture, Section, Table
-from matstd.report.numbers import capital, digits, p_value, plural, span
+from matstd.report.numbers import capital, digits, p_value, plural, pose_word, span
 from matstd.report.plots import (
     draw_normal_plot,
     draw_on_standard,
@@ -180,8 +180,7 @@ def outlier_section(fit: Fit) -> Section:
 def extent(touches: Touches) -> str:
     """`at 24 table poses in 2.1 h`, as far as the run has poses and times."""
     poses = len(np.unique(np.column_stack([touches.setup, touches.pose]), axis=0))
-    kind = "table pose" if touches.chain.turns_workpiece else "pose"
-    at = f" at {plural(poses, kind)}" if touches.chain.rotary_axes else ""
+    at = f" at {plural(poses, pose_word(touches))}" if touches.chain.rotary_axes else ""
     time = float(np.ptp(touches.time))
     return f"{at} in {span(time)}" if time > 0.0 else at
 

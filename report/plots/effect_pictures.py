@@ -10,7 +10,7 @@ from matstd.diagnosis.fit import MIN_POSES, Fit
 from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.residual import Partial, Seen, binned, partial
 from matstd.report.effects import effect_cell, effect_title
-from matstd.report.numbers import microns, noun, shown
+from matstd.report.numbers import microns, noun, pose_word, shown
 from matstd.report.plots.residual_pictures import kept
 from matstd.report.style import (
     BLUE,
@@ -88,8 +88,7 @@ def _held_words(diagnosis: Diagnosis) -> str:
         return "rows held out by the file"
     t = diagnosis.fit.run.touches
     poses = len(np.unique(np.column_stack([t.setup, t.pose])[diagnosis.fit.used], axis=0))
-    what = "table pose" if t.chain.turns_workpiece else "pose" if t.chain.rotary_axes else "place"
-    return f"held out, one {what if poses >= MIN_POSES else 'block'} at a time"
+    return f"held out, one {pose_word(t) if poses >= MIN_POSES else 'block'} at a time"
 
 
 def _step_words(step: Step) -> str:
@@ -116,6 +115,8 @@ def _value(ax: Any, x: float, y: float, above: bool, colour: str) -> None:
         va="bottom" if above else "top",
         fontsize=8.5,
         color=colour,
+        # the line of the noise passes behind
+        bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.85, "pad": 0.6},
     )
 
 

@@ -11,7 +11,7 @@ from matstd.diagnosis.residual import variables
 from matstd.report.effects import effect_title
 from matstd.report.laws import LawCurve
 from matstd.report.live import TREE, packed
-from matstd.report.numbers import capital, unit_words
+from matstd.report.numbers import capital, pose_word, unit_words
 from matstd.report.run_view.touched_bodies import touched_bodies
 from matstd.report.style import axis_of
 from matstd.twin.frames import Array
@@ -105,6 +105,7 @@ def _touches(fit: Fit) -> TREE:
         "setup": packed(t.setup, "u2"),
         "setups": [s.name for s in t.setups],
         "pose": packed(t.pose, "i4"),
+        "poseWord": pose_word(t),
         "state": packed(state, "u1"),
         "group": packed(group, "u2"),
         "groups": names,

@@ -46,6 +46,7 @@ export class Residuals {
     const finite = this.column.values.filter(Number.isFinite);
     const [low, high] = finite.length ? extent(finite) : [0, 1];
     this.xRange = [low, high];
+    this.ends = null;
     this.plot.frame.xLabel = this.column.name;
   }
 
@@ -57,8 +58,10 @@ export class Residuals {
     const [seen, curve] = this.law ? this.putBack(this.law, shown) : [residual, null];
     const edge = this.law ? this.lawTop : this.top;  // gross errors stand at the edge
     const y = seen.map(v => Math.max(-edge, Math.min(edge, v)));
+    const [low, high] = extent([...y, ...(this.ends || [-2 * this.data.noise, 2 * this.data.noise])]);
+    this.ends = [low, high];  // they only grow
     this.plot.show({ x: this.column.values, y, colours, xRange: this.xRange,
-      yRange: [-edge, edge], band: this.law ? 0 : 2 * this.data.noise, curve });
+      yRange: [low - 0.04 * (high - low), high + 0.04 * (high - low)], band: this.law ? 0 : 2 * this.data.noise, curve });
     const alone = this.data.touches.isSpread ? "" : "all readings at one place: no picture in space; ";
     this.hint.textContent = `${alone}drag to choose touches, click to choose none; ${this.law
       ? `${curve ? "line: the law with ± 2 u; " : ""}dots: residuals${
@@ -98,7 +101,7 @@ export class Residuals {
     if (!values.length) values = this.ofTestRows(names.length, group.values, residual, state.values);
     this.title.textContent = names.length && /^lines/.test(names[0])
       ? "Held-out error by stretch of the run"
-      : `Held-out error by ${this.data.touches.setups.length > 1 ? "set-up and " : ""}table pose`;
+      : `Held-out error by ${this.data.touches.setups.length > 1 ? "set-up and " : ""}${this.data.touches.poseWord}`;
     if (!this.before) {
       this.before = values;
       this.barTop = Math.max(...values.filter(Number.isFinite), this.data.noise);
