@@ -62,7 +62,11 @@ class SingleChange:
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Trend(Displayed):
-    """What changed between several runs of one machine, and what did not."""
+    """What changed between several runs of one machine, and what did not.
+
+    Of a change several estimates exist, with other runs taken together or apart: quote that of
+    `known_best`, which sentences, tables and files have.
+    """
 
     runs: tuple[RunErrors, ...]
     # runs, by number, whose geometry differs from that of the run before; 0 stands for the first

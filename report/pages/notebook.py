@@ -20,6 +20,7 @@ from matstd.diagnosis.answer import Comparison, Diagnosis
 from matstd.diagnosis.files import SavedModel
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.residual import rank_variables
+from matstd.report.geometry import change_sentences
 from matstd.report.identifiability import gist
 from matstd.report.layout import picture
 from matstd.report.maps import draw_regions
@@ -58,7 +59,15 @@ def _fit(fit: Fit) -> str:
 
 
 text.register(Comparison, comparison_sentence)
-text.register(Diagnosis, verdict_sentence)
+
+
+@text.register
+def _diagnosis(found: Diagnosis) -> str:
+    """The verdict, and of several runs what changed between them."""
+    changes = [] if found.trend is None else change_sentences(found.trend)
+    return "\n".join([verdict_sentence(found), *(f"- {words}" for words in changes)])
+
+
 text.register(Study, lambda study: "\n".join(study_words(study)))
 text.register(IdentifiabilityReport, lambda known: f"{gist(known)}.")
 text.register(Chain, lambda chain: f"{chain.name}: {chain.notation}")

@@ -11,6 +11,7 @@ from simulator_experiment import MACHINES
 from simulator_machine import read_machine
 from simulator_runs import read_runs, simulated_runs
 
+import matstd
 from matstd.cli import main
 from matstd.diagnosis.answer import Verdict, diagnose
 from matstd.diagnosis.answer.trend import single_change
@@ -67,6 +68,8 @@ def test_what_changed_is_reported_with_its_size_and_nothing_else(diagnosed) -> N
     assert abs(change.value - CHANGE) < COVERED * change.u
     assert change.u < 0.25 * CHANGE
     (sentence,) = change_sentences(diagnosed.trend)
+    assert matstd.diagnose  # the door registers how results are shown
+    assert sentence in repr(diagnosed)  # a session shows it as the command does
     assert sentence.startswith("from a to b squareness of Y to X (EC0Y) changed from ")
 
 
