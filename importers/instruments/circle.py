@@ -11,6 +11,7 @@ Reference:
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -158,6 +159,47 @@ def _order(
         found = f"column {sheet.columns[column]!r}"
         raise BadFile(sheet.path, "header", found, "CCW or CW in the names of several runs")
     return *_by_motion(angle), order
+
+
+class CircleParameter(NamedTuple):
+    """A number of a circular test with its standard uncertainty, rad, a ratio or mm."""
+
+    name: str
+    value: float
+    u: float
+
+
+def circle_parameters(test: CircularTest) -> list[CircleParameter]:
+    """Squareness, scales and reversals, if these and the centre are all that acts.
+
+    Least squares of ``r = R (a cos^2 + b sin^2 - c sin cos) + d cos + e sin + (f sgn(v_1) cos +
+    g sgn(v_2) sin) / 2`` with scales a and b, squareness c (positive where the angle between the
+    positive axes exceeds 90 degrees), centre (d, e), reversals f and g, and the velocities v of the
+    axes. Every other error of a component adds to the residual, and so to the uncertainties.
+
+    Reference:
+        ISO 230-4.
+    """
+    # readings at which an axis reverses belong to neither of its ways
+    moves = np.abs(np.sin(2.0 * test.angle)) > ANGLE_BEFORE_READING
+    angle, sense, R = test.angle[moves], test.sense[moves], test.radius
+    cos, sin, deviation = np.cos(angle), np.sin(angle), test.deviation[moves]
+    ways = np.sign(-sin * sense), np.sign(cos * sense)
+    A = np.column_stack(
+        [-R * sin * cos, R * cos**2, R * sin**2, 0.5 * ways[0] * cos, 0.5 * ways[1] * sin, cos, sin]
+    )
+    if np.linalg.matrix_rank(A) < A.shape[1] or len(A) <= A.shape[1]:
+        return []  # an arc, or readings that are too few
+    value, *_ = np.linalg.lstsq(A, deviation, rcond=None)
+    left = deviation - A @ value
+    scatter = float(left @ left) / (len(A) - A.shape[1])
+    u = np.sqrt(scatter * np.diag(np.linalg.inv(A.T @ A)))
+    names = (
+        f"squareness of {test.plane[0]} and {test.plane[1]}",
+        *(f"scale of {a}" for a in test.plane),
+        *(f"reversal of {a}" for a in test.plane),
+    )
+    return [CircleParameter(*one) for one in zip(names, value, u, strict=False)]
 
 
 def circle_machine(plane: str, radius: float) -> Chain:

@@ -6,6 +6,7 @@ import pytest
 from matstd.cli import main
 from matstd.diagnosis.answer import diagnose
 from matstd.importers import circle_machine, circle_run, read_circle, read_sheet
+from matstd.importers.instruments import circle_parameters
 from matstd.twin.errors import BadFile, DesignError
 from matstd.twin.files import read_machine, read_run
 from matstd.twin.library import parse_effect
@@ -138,3 +139,27 @@ def test_a_loaded_bar_pushes_the_tool_outwards(tmp_path):
     C = columns([stiff], run.touches)
     found = np.linalg.lstsq(C[:, :1], run.deviation)[0]
     assert found[0] == pytest.approx(40e-6, rel=1e-3)
+
+
+def test_squareness_scale_and_reversal_of_iso_230_4_alone(tmp_path):
+    """A bar of 150 mm: 90 degrees less 30 µrad, X 20 ppm too long, 5 µm reversal of X; by hand."""
+    rng = np.random.default_rng(5)
+    degrees = np.arange(0.0, 360.0, 2.0)
+    at = np.radians(degrees)
+    rows = ["angle [deg];CCW [um];CW [um]"]
+    for angle, a in zip(degrees, at, strict=True):
+        # Y leans to +X: the tool is 30e-6 y farther along X, which is 30e-6 sin cos of the radius
+        own = 150e3 * (30e-6 * np.sin(a) * np.cos(a) + 20e-6 * np.cos(a) ** 2)
+        each = [
+            own + 2.5 * np.sign(-np.sin(a) * s) * np.cos(a) + rng.normal(0, 0.3) for s in (1, -1)
+        ]
+        rows.append(";".join(f"{v:.3f}" for v in (angle, *each)))
+    path = tmp_path / "ball.csv"
+    path.write_text("\n".join(rows) + "\n")
+    found = circle_parameters(read_circle(read_sheet(path), "XY", 150.0))
+    expected = [-30e-6, 20e-6, 0.0, 5e-3, 0.0]
+    assert [one.name for one in found][::3] == ["squareness of X and Y", "reversal of X"]
+    for one, value in zip(found, expected, strict=True):
+        assert one.value == pytest.approx(value, abs=4.0 * one.u)
+    # 360 readings of 0.3 µm: the mean square of sin cos is an eighth
+    assert found[0].u == pytest.approx(0.3e-3 / 150.0 / np.sqrt(360 / 8), rel=0.15)

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from matstd.importers import Sheet
-    from matstd.importers.instruments import PositioningTest
+    from matstd.importers.instruments import CircleParameter, PositioningTest
     from matstd.importers.points import Meaning
     from matstd.twin.machine import Chain
     from matstd.twin.record import Run
@@ -97,6 +97,7 @@ def _say_positioning(test: PositioningTest) -> None:
 def circle(args: argparse.Namespace, sheet: Sheet) -> tuple[Run, Chain]:
     """A circular test as a run."""
     from matstd.importers import circle_machine, circle_run, read_circle
+    from matstd.importers.instruments import circle_parameters
 
     plane = args.circle.upper()
     if plane not in ("XY", "YZ", "ZX", "YX", "ZY", "XZ"):
@@ -115,9 +116,21 @@ def circle(args: argparse.Namespace, sheet: Sheet) -> tuple[Run, Chain]:
         say(f"- {run}: {int(rows.sum())} readings, {way}")
     if args.feed is None:
         say("- without --feed no speeds are known: a servo lag cannot be found")
+    if words := [_circle_words(one) for one in circle_parameters(test)]:
+        say(f"- ISO 230-4, if nothing else acts: {', '.join(words)}")
     chain = _machine(args) or circle_machine(plane, args.radius)
     u = _uncertainty(args, "u_um", UM)
     return circle_run(test, chain, u, args.centre, args.feed, args.bar_force), chain
+
+
+def _circle_words(one: CircleParameter) -> str:
+    """`squareness of X and Y -29.60 ± 0.29 µrad`."""
+    from matstd.report.numbers import with_uncertainty
+
+    unit, name = {"squareness": (URAD, "µrad"), "scale": (1e-6, "ppm")}.get(
+        one.name.partition(" ")[0], (UM, "µm")
+    )
+    return f"{one.name} {with_uncertainty(one.value / unit, one.u / unit, name)}"
 
 
 def arm(args: argparse.Namespace, sheet: Sheet) -> tuple[Run, Chain]:
