@@ -35,7 +35,7 @@ from simulator_laws import FAMILIES, law_case
 from matstd.diagnosis.files import model_text, parsed_model
 from matstd.diagnosis.laws import Learning, learn_laws
 from matstd.twin.files import read_run
-from matstd.twin.laws import Law, carrier_of, law_of
+from matstd.twin.laws import Law, carrier_of
 from matstd.twin.record import Run, without_copies
 from matstd.twin.units import UM
 
@@ -130,7 +130,8 @@ def score(folder: Path) -> Score:
     none = left_of(second, second.deviation, ordinary)
     learnt = left_of(second, second.deviation - found.predicted(second), ordinary)
     saved = parsed_model(model_text(found.saved, "run.csv"), "model.toml", runs=[second])
-    own = np.array([law_of(effect) is not None for effect, _ in saved.model.parameters])
+    base = {effect.name for effect in found.before.model.effects}  # else a law or one of its class
+    own = np.array([effect.name not in base for effect, _ in saved.model.parameters])
     laws = saved.model.columns(second.touches)[:, own] @ saved.estimates.mean[own]
     compared = left_of(second, second.deviation - laws, ordinary)
     free = folder / "run_test_free.csv"
