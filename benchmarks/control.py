@@ -38,13 +38,14 @@ def programs_of(design: Path) -> list[Program]:
     return list(make_programs(plan, read_dialect("linuxcnc")).programs)
 
 
-def interpreted(program: Program, folder: Path) -> str:
-    """What `rs274` says of a program in which every touch is met."""
+def interpreted(program: Program, folder: Path, top: float) -> str:
+    """What `rs274` says of a program in which every touch is met; Z ends at `top`, mm."""
     met = program.text.replace("[#5070 - 1]", "0").replace("#5070 GT 0", "1 GT 0")
     (folder / "tool.tbl").write_text("T30 P30 Z163.0 D6.0\n")
     (folder / "a.var").write_text("")
     (folder / program.file).write_text(met)
-    command = ["rs274", "-t", "tool.tbl", "-v", "a.var", "-g", program.file]
+    (folder / "a.ini").write_text(f"[AXIS_Z]\nMAX_LIMIT = {top}\n")
+    command = ["rs274", "-i", "a.ini", "-t", "tool.tbl", "-v", "a.var", "-g", program.file]
     home = os.environ | {"HOME": str(folder)}  # where it keeps a tool table that two runs share
     done = subprocess.run(
         command, cwd=folder, env=home, capture_output=True, text=True, check=False
@@ -77,10 +78,11 @@ def main() -> None:
     args = parser.parse_args()
     if shutil.which("rs274") is None:
         raise SystemExit("LinuxCNC (rs274) is not installed: docs/controls.md")
+    top = read_machine(args.design / "machine.toml").link("Z").range[1]
     with tempfile.TemporaryDirectory() as folder:
         for program in programs_of(args.design):
             begin = time.perf_counter()
-            said = interpreted(program, Path(folder))
+            said = interpreted(program, Path(folder), top)
             seconds = time.perf_counter() - begin
             is_whole = "PROGRAM_END" in said
             made = said.count("STRAIGHT_PROBE") // 2

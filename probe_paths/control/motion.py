@@ -22,6 +22,8 @@ _FUNCTIONS = {"M91", "M126"}
 def straight_line(state: State, block: Block) -> Move:
     """Execute an L block and return its move; raises BadFile."""
     state.check_status_was_tested(block)
+    if state.fault is not None and state.fault.is_at_rest:
+        state.check_is_as_planned(block)
     functions = set(block.word("functions").split())
     if not functions <= _FUNCTIONS:
         extra = " ".join(sorted(functions - _FUNCTIONS))

@@ -105,7 +105,7 @@ class State:
             raise self.refusal(block, f"{missing[0]} before it", what)
 
     def check_is_as_planned(self, block: Block) -> None:
-        """Refuse a move down while a fault has not been tested."""
+        """Refuse a move while a fault has not been tested."""
         if self.fault is not None:
             expected = f"a test that stops the program before it (LBL {self.fault.label:d})"
             found = f"{block.text!r} although {self.fault.what} is off by {self.off:+g}"

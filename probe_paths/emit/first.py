@@ -27,21 +27,22 @@ class FirstWriter(Writer):
         row, visit = self._touch_from_above(), self.plan.visits[0]
         above = {a: float(self.plan.start[row, self.plan.chain.axis_index(a)]) for a in "XY"}
         tests = interlocks(k, self.frame, is_first=True, above=above)
-        places = [test for test in tests if test.is_above]
+        later = [test for test in tests if not (test.is_at_rest or test.is_above)]
         blocks = [
             k.begin(name),
             *self._first_remarks(row, duration),
             *k.reset(self.plan.chain, self.dialect),
+            *self._all_tested(test for test in tests if test.is_at_rest),
             self.retract,
             k.tool_call(self.dialect.tool),
             k.preset(self.dialect.preset),
             self.retract,
             *self._home()[-1:],
             *self._probe_data(),
-            *(block for test in tests if not test.is_above for block in self._tested(test)),
+            *self._all_tested(later),
             k.line(self.frame.coordinates(self.plan.start[row], "XY"), None),
             k.wait,
-            *(block for test in places for block in self._tested(test)),
+            *self._all_tested(test for test in tests if test.is_above),
             *self._in_air(row, visit.height),
             *self._on_ball(row, visit.pose),
             self.retract,

@@ -1,6 +1,6 @@
 """The blocks of a plan's programs, in the order that a cautious operator would choose."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -167,7 +167,8 @@ class Writer:
     def _reset(self, visits: int) -> list[str]:
         k, dialect = self.language, self.dialect
         start = [k.comment(f"START AT VISIT 1 TO {visits}:"), k.assign(Q.START, 1)]
-        reset = [k.structure("RESET"), *k.reset(self.plan.chain, dialect), self.retract]
+        at_rest = self._all_tested(test for test in self.tests if test.is_at_rest)
+        reset = [k.structure("RESET"), *k.reset(self.plan.chain, dialect), *at_rest, self.retract]
         probe = [k.tool_call(dialect.tool), k.preset(dialect.preset), self.retract]
         return [*start, *reset, *probe, *self._home()]
 
@@ -189,7 +190,7 @@ class Writer:
             *(log if self.raised is None else []),
             k.structure("TEST PROBE, PRESET AND MACHINE"),
             *([] if self.raised is None else [k.wait]),
-            *(block for test in self.tests for block in self._tested(test)),
+            *self._all_tested(test for test in self.tests if not test.is_at_rest),
         ]
 
     def _probe_data(self) -> list[str]:
@@ -204,6 +205,9 @@ class Writer:
             k.read(Q.TOOL, Datum.TOOL),
             k.assign(Q.PRESET, self.dialect.preset),
         ]
+
+    def _all_tested(self, tests: Iterable[Interlock]) -> list[str]:
+        return [block for test in tests for block in self._tested(test)]
 
     def _tested(self, test: Interlock) -> list[str]:
         """Read, subtract the planned value, and stop where the rest exceeds its limit."""
@@ -258,7 +262,7 @@ class Writer:
         words = self._words(rotary)
         tests = turn_tests(self.language, self.frame)
         planned = (test._replace(planned=words[str(test.datum)]) for test in tests)
-        return [self.language.wait, *(block for test in planned for block in self._tested(test))]
+        return [self.language.wait, *self._all_tested(planned)]
 
     def _end_plane(self) -> list[str]:
         """End of a tilted plane, before the table turns."""

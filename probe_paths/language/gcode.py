@@ -33,6 +33,7 @@ SYSTEM: Mapping[Datum, str] = {
     Datum.TOOL: "#5400",
     Datum.TOOL_X: "[0 + #5401]",
     Datum.TOOL_Y: "[0 + #5402]",
+    Datum.TOP: "#<_ini[AXIS_Z]MAX_LIMIT>",
     Datum.ROTATION: "#[5210 + 20 * #5220]",
     **{Datum(a): f"#<_abs_{a.lower()}>" for a in "XYZABC"},
     **{
@@ -42,7 +43,11 @@ SYSTEM: Mapping[Datum, str] = {
         )
     },
 }
-"""Offsets are those of the coordinate system in use, #5220 (1 is G54), whatever selected it."""
+"""Offsets are those of the coordinate system in use, #5220 (1 is G54), whatever selected it.
+
+`#<_ini[section]name>` is a number of the INI file (LinuxCNC 2.9, G-code overview, "INI file
+variables"); a program that asks for one that is not there ends with an error.
+"""
 
 TERMS = Terms(
     reset=MODES,

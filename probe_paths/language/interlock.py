@@ -41,6 +41,11 @@ class Interlock(NamedTuple):
     limit: float  # by how much it may differ
 
     @property
+    def is_at_rest(self) -> bool:
+        """A test that needs neither probe nor preset: it stands before the first motion."""
+        return self.datum is Datum.TOP
+
+    @property
     def is_above(self) -> bool:
         """A test of where X or Y stands, above the ball of a commissioning program."""
         return self.work is None and self.datum in (Datum.X, Datum.Y)
@@ -50,7 +55,7 @@ NOWHERE = {"X": 0.0, "Y": 0.0}  # where a place is asked for and none is known
 
 _CYCLES = "cycle 8, 10, 11 or 26"
 
-_FIRST = (Label.OTHER_PROBE, Label.ROTATION, Label.PRESET_Z)
+_FIRST = (Label.TOP, Label.OTHER_PROBE, Label.ROTATION, Label.PRESET_Z)
 """What a commissioning program tests beside the place above the ball."""
 
 

@@ -261,6 +261,21 @@ def test_linuxcnc_stops_before_it_goes_down_where_it_is_not_set_up_so(
 
 
 @rs274.is_there
+@pytest.mark.parametrize(
+    ("higher", "stops"), [(-6.0, True), (-4.9, False), (4.9, False), (6.0, True)]
+)
+def test_linuxcnc_does_not_move_where_z_ends_elsewhere(for_linuxcnc, tmp_path, higher, stops):
+    """The upper end stands in its INI file; one without it ends the program, too."""
+    text = rs274.all_met(for_linuxcnc.programs[0].text)
+    done = rs274.interpreted(text, tmp_path, higher=higher)
+    assert ("STRAIGHT" not in done) == ("(ABORT,1011)" in done) == stops
+    assert ("PROGRAM_END" in done) != stops
+    unknown = rs274.interpreted(text.replace("[AXIS_Z]", "[AXIS_W]"), tmp_path)
+    assert "not defined" in unknown
+    assert "STRAIGHT" not in unknown
+
+
+@rs274.is_there
 def test_linuxcnc_stops_where_a_turn_ended_elsewhere(for_linuxcnc, tmp_path):
     """As a wrapped rotary axis would: C-100 is a turn to 100 degrees."""
     text = rs274.all_met(for_linuxcnc.programs[0].text)

@@ -77,6 +77,8 @@ def test_a_program_never_starts_the_spindle_and_resets_before_it_moves(programs)
         assert "M129" in before
         assert "PLANE RESET STAY" in before
         assert all(f"CYCL DEF 7.{i}" in before for i in range(4))
+        assert "ID230 NR3 IDX3" in before  # the upper end of Z is tested before anything moves
+        assert "GT +5 GOTO LBL 103" in before
         assert "M91" in code[first_move]
 
 
