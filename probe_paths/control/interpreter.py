@@ -125,6 +125,7 @@ def interpret(
         side=np.zeros(axes),
         is_tcpm_off=language.terms.reset not in reset,
         is_plane_off=language.terms.plane not in reset,
+        orientation_left=len(language.orientation) if dialect and dialect.is_oriented else 0,
         head_left={"M115", "M145"} & set(reset),
         is_search=stated.is_search,
         is_first=stated.is_first,

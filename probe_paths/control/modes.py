@@ -158,6 +158,13 @@ def _tool_call(block: Block, state: State) -> None:
     state.is_retracted = False
 
 
+def _orientation(block: Block, state: State) -> None:
+    """A block that orients the spindle; the tool changer turns it, so it follows the call."""
+    if state.tool is None:
+        raise state.refusal(block, f"{state.terms.tool} before it")
+    state.orientation_left -= 1
+
+
 def _subtract(block: Block, state: State) -> None:
     """FN 2: a parameter minus a number or another parameter."""
     value, is_number = state.value(block, int(block.word("from"))), block.words["other"] is None
@@ -182,6 +189,7 @@ _SETS = {
 
 _SETTERS: Mapping[Kind, Callable[[Block, State], None]] = {
     Kind.HEAD_OFF: lambda block, state: state.head_left.discard(block.word("mode")),
+    Kind.ORIENTATION: _orientation,
     Kind.PLANE: _plane,
     Kind.SHIFT: _shift,
     Kind.TOOL_CALL: _tool_call,

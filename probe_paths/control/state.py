@@ -40,6 +40,7 @@ class State:
     is_tcpm_off: bool  # M129 has been read, or is not needed on this machine
     is_plane_off: bool  # the same of PLANE RESET
     head_left: set[str]  # words of the reset that end an offset of the head, not read so far
+    orientation_left: int  # blocks that orient the spindle and were not read behind the tool call
     parameters: dict[int, Value] = field(default_factory=dict)
     feed: float | None = None  # modal feed, mm/min
     is_radius_off: bool = False  # R0 has been read
@@ -97,6 +98,7 @@ class State:
                 (min(self.head_left, default=""), not self.head_left),
                 (self.terms.shift, self.shift_off == set("XYZ")),
                 (self.terms.tool, self.tool is not None),
+                ("the orientation of the spindle (is_oriented)", self.orientation_left <= 0),
                 (self.terms.preset, self.preset is not None),
             )
             if not there

@@ -169,8 +169,13 @@ class Writer:
         start = [k.comment(f"START AT VISIT 1 TO {visits}:"), k.assign(Q.START, 1)]
         at_rest = self._all_tested(test for test in self.tests if test.is_at_rest)
         reset = [k.structure("RESET"), *k.reset(self.plan.chain, dialect), *at_rest, self.retract]
-        probe = [k.tool_call(dialect.tool), k.preset(dialect.preset), self.retract]
-        return [*start, *reset, *probe, *self._home()]
+        return [*start, *reset, *self._called(), *self._home()]
+
+    def _called(self) -> list[str]:
+        """Call of the probe, in the orientation of its calibration where the dialect has one."""
+        k, dialect = self.language, self.dialect
+        oriented = k.orientation if dialect.is_oriented else ()
+        return [k.tool_call(dialect.tool), *oriented, k.preset(dialect.preset), self.retract]
 
     def _home(self) -> list[str]:
         """Rotary axes to the position where programs begin and end, unwinding them."""

@@ -26,6 +26,7 @@ class Kind(Enum):
     STOCK_LOW = rf"BLK FORM 0\.1 Z {_XYZ}"
     STOCK_HIGH = rf"BLK FORM 0\.2 {_XYZ}"
     SPINDLE_OFF = r"M0?5"
+    ORIENTATION = r"CYCL DEF 13\.0 ORIENTATION|CYCL DEF 13\.1 ANGLE ?\+?0(?:\.0*)?|M19"
     TCPM_ON = r"M128(?: F\d+)?"
     TCPM_OFF = r"M129"
     HEAD_OFF = r"(?P<mode>M115|M145)"
@@ -99,8 +100,8 @@ _KNOWN_OTHERS = (
     (r"BEGIN|END", "BEGIN PGM <name> MM and END PGM <name> MM"),
 )
 _ANYTHING = (
-    "a block of the closed list: BEGIN END ; * BLK L M5 M115 M126 M127 M129 M140 M145 PLANE CYCL "
-    "TOOL TCH FN LBL CALL STOP M30"
+    "a block of the closed list: BEGIN END ; * BLK L M5 M19 M115 M126 M127 M129 M140 M145 PLANE "
+    "CYCL TOOL TCH FN LBL CALL STOP M30"
 )
 
 

@@ -124,6 +124,7 @@ class Dialect:
     head_off: tuple[str, ...] = ("M115", "M145")
     # programs use it: coordinates are those of planes tilted with the table
     is_tilted: bool = False
+    is_oriented: bool = False  # programs orient the spindle after the call of the probe
     sensors: tuple[Sensor, ...] = ()  # temperatures that the control hands to programs
 
     def on_control(self, name: str) -> str:

@@ -30,6 +30,7 @@ class DialectTable(Table):
     slow_feed: float = Field(default=0.0, ge=0.0, le=100.0)
     step_back: float = Field(default=0.0, ge=0.0, le=2.0)
     has_planes: bool = False
+    is_oriented: bool = False
     head_off: Annotated[tuple[Literal["M115", "M145"], ...], Strict(False)] = ("M115", "M145")
 
 

@@ -173,6 +173,7 @@ GCODE = Language(
     printed=_printed,
     lines=_lines,
     reset=lambda *_: ("M5", MODES, "G61", "G92.1"),
+    orientation=("M19 R0 Q10",),
     wait=WAIT,
     label_end="ENDSUB",
     operator_stop="M0",

@@ -26,6 +26,7 @@ _LINES = {
     Kind.STRUCTURE: r";\* (?P<text>.+)",
     Kind.COMMENT: r";(?P<text>.*)",
     Kind.SPINDLE_OFF: r"M5",
+    Kind.ORIENTATION: r"M19 R0 Q10",
     Kind.TCPM_OFF: re.escape(g.MODES),
     Kind.PLANE_OFF: r"G61",
     Kind.SHIFT: r"G92\.1",

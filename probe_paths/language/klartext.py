@@ -50,6 +50,10 @@ DATUM_SHIFT_OFF = (
 """Cycle 7 with zeros: only the preset acts afterwards."""
 
 
+ORIENTATION = ("CYCL DEF 13.0 ORIENTATION", "CYCL DEF 13.1 ANGLE 0", "M19")
+"""As a published post-processor for this control orients a probe; M19 is the builder's."""
+
+
 def plane(angles: Sequence[float], master: float) -> str:
     """PLANE SPATIAL: coordinates of a plane square to the tool; nothing moves.
 
@@ -145,6 +149,7 @@ KLARTEXT = Language(
     lines=_lines,
     reset=_reset,
     unwind=("M127",),
+    orientation=ORIENTATION,
     wait="FN 20: WAIT FOR SYNC",
     tilting=Tilting(plane, PLANE_OFF),
     label_end="LBL 0",

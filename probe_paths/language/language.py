@@ -118,6 +118,7 @@ class Language:
     lines: Callable[[Sequence[str]], list[str]]  # lines of the file from all blocks
     # blocks that begin a program on a machine: nothing that an earlier one left acts afterwards
     reset: Callable[[Chain, Dialect], Sequence[str]]
+    orientation: Sequence[str]  # blocks that orient the spindle to 0 degrees
     wait: str  # block that stops the look-ahead: system data are read where the machine stands
     label_end: str
     operator_stop: str  # waits for the operator

@@ -180,6 +180,14 @@ def _probe(station: Station) -> list[Section]:
         ["radius of the ball in mm", f"{probe.radius:.4f}"],
         ["preset", f"row {dialect.preset}: table centre{_zero(station.plan)}, no basic rotation"],
     ]
+    angle = (
+        "0°, by every program (`M19`); calibrate the probe at the same angle"
+        if dialect.is_oriented
+        else "as at the calibration; the programs leave it (`is_oriented` of a dialect sets it). "
+        "Look at the mark on the probe after every tool call: a stylus that runs out shifts all "
+        "touches of a program"
+    )
+    rows.append(["orientation of the spindle", angle])
     if dialect.folder:
         rows.append(["folder of programs, masks and logs", f"`{dialect.folder}`"])
     cylinders = [[f"{end:.1f}", f"{2.0 * radius:.1f}"] for end, radius in probe.stack]

@@ -1,6 +1,7 @@
 """Dialect files: those that come with the tool, a user's own, and bad ones."""
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -40,6 +41,30 @@ def test_every_control_has_the_same_touches(control, plan, chain, programs):
             assert (a.direction == b.direction).all()
             assert (a.side == b.side).all()
             assert (a.distance, a.feed, a.back) == (b.distance, b.feed, b.back)
+
+
+@pytest.mark.parametrize(
+    ("control", "called", "words"),
+    [
+        ("itnc530", "TOOL CALL 30 Z", "CYCL DEF 13.0 ORIENTATION|CYCL DEF 13.1 ANGLE 0|M19"),
+        ("linuxcnc", "T30 M6", "M19 R0 Q10"),
+    ],
+)
+def test_the_spindle_is_oriented_after_the_call_where_the_dialect_says_so(
+    control, called, words, plan, chain, programs
+):
+    dialect = replace(read_dialect(control), is_oriented=True)
+    made = make_programs(plan, dialect)
+    (program,) = made.programs
+    lines = [re.sub(r"^\d+ ", "", line) for line in program.text.splitlines()]
+    after = lines.index(called) + 1
+    wanted = words.split("|")
+    assert lines[after : after + len(wanted)] == wanted
+    assert "M19" not in programs.programs[0].text
+    for word in wanted:
+        left = "\n".join(line for line in lines if line != word) + "\n"
+        with pytest.raises(BadFile, match="the orientation of the spindle"):
+            interpret(left.encode(), Path(program.file), made.masks.get, chain, dialect=dialect)
 
 
 def test_a_file_of_the_users_own_is_seen_from_its_folder(tmp_path):

@@ -61,7 +61,13 @@ def test_files_are_what_the_control_takes(programs, tmp_path):
         assert len(path.stem) <= 16
         assert re.fullmatch(r"[A-Z][A-Z0-9_]*", path.stem)
         kinds = {b.kind for b in read_blocks(data, path)}
-        assert kinds == set(Kind) - {Kind.TCPM_ON, Kind.HEAD_OFF, Kind.SHORTER_WAY, Kind.PLANE}
+        assert kinds == set(Kind) - {
+            Kind.TCPM_ON,
+            Kind.HEAD_OFF,
+            Kind.ORIENTATION,
+            Kind.SHORTER_WAY,
+            Kind.PLANE,
+        }
     masks = sorted(tmp_path.glob("*.A"))
     assert {m.name for m in masks} == set(programs.masks)
     for mask in masks:

@@ -67,6 +67,7 @@ def test_hashes_programs_and_place_are_those_of_the_head(sheet):
     head = programs.programs[0].text
     for word in ("CALIBRATION", "WORKSHOP"):
         assert re.search(rf";{word} (\w+)", head)[1] in text
+    assert "orientation of the spindle" in text
     (table,) = [t for t in shown_tables(text) if t.section == "Run"]
     rows = table.rows[table.headings :]
     assert [(name, int(touches)) for name, touches, _ in rows] == [
