@@ -218,7 +218,8 @@ def _run(station: Station, others: Companions, playback: str) -> list[Section]:
 def _steps(others: Companions) -> list[str]:
     dry = others.dry_run.programs[0]
     return [
-        "Load programs and masks. The control must not mark any block as an error.",
+        "Load programs and masks. The control must not mark any block as an error: where it does, "
+        "write the programs with the words of its software (`--control`, a dialect).",
         "Calibrate the probe; clean standard and ball.",
         _search_step(others),
         *_first_steps(others),
