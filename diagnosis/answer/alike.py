@@ -106,7 +106,14 @@ def periods_alike(
     rest = tuple(b for i, b in enumerate(best) if i != named)
     pitch = link.pitch if is_stated else None
     step = None if inner.is_harmonic else even_step(q)
-    alike = Alike(inner.over, rest, step, pitch, inner.is_harmonic, beyond)
+    alike = Alike(
+        axis=inner.over,
+        others=rest,
+        step=step,
+        pitch=pitch,
+        is_harmonic=inner.is_harmonic,
+        beyond=beyond,
+    )
     return best[named], alike
 
 
