@@ -6,7 +6,7 @@ from pathlib import Path
 
 from matstd.compensation.field import MachineErrors
 from matstd.probe_paths.campaign import setup_tolerance
-from matstd.probe_paths.language import LANGUAGES, Label, Q, interlocks
+from matstd.probe_paths.language import LANGUAGES, Label, Q, interlocks, turn_tests
 from matstd.probe_paths.locate import Companions
 from matstd.probe_paths.plan import SMALLEST_GAP, Heading, ProgramFrame, TouchPlan, calibration_hash
 from matstd.probe_paths.stations import Station
@@ -28,6 +28,8 @@ _REMEDY = {
     Label.PRESET_X: "X of the preset's row: the centre of the table",
     Label.PRESET_Y: "Y of the preset's row: the centre of the table",
     Label.PRESET_Z: "Z of the preset's row: the face of the table",
+    Label.TURNED: "`WRAPPED_ROTARY` of the axis in the INI file: 0",
+    Label.TOOL_OFFSET: "X and Y of the probe in the tool table: zero",
     Label.ZERO_1: "the rotary axis in the preset's row",
     Label.ZERO_2: "the rotary axis in the preset's row",
 }
@@ -258,7 +260,8 @@ def _first_steps(others: Companions) -> list[str]:
         f"low. It has {first.blocks} blocks with every word that the other programs use: one touch "
         "in the air, after which it must continue, and one on a ball. From its log, "
         "`matstd evaluate` determines which Z the control returns. If it stops at label 93, "
-        "length of the tool, basic rotation or preset differ from those below; at "
+        "upper end of Z, length of the tool, basic rotation or preset differ from those below, or "
+        "a cycle of an earlier job is active; at "
         "`FN 14: ERROR= 1014` the control returns another touch status than the programs expect."
     ]
 
@@ -279,10 +282,15 @@ def _ball_step(others: Companions) -> str:
 def _alarms(plan: TouchPlan, station: Station) -> Section:
     """What every alarm tests, and what to check."""
     missed, frame = int(Label.NO_CONTACT), ProgramFrame(plan.chain, plan.probe)
-    tests = interlocks(LANGUAGES[station.dialect.language], frame)
+    language = LANGUAGES[station.dialect.language]
+    tests = [*interlocks(language, frame), *turn_tests(language, frame)]
     lost = "a touch met nothing; Z is up, the log contains all touches so far"
     rows = [[str(missed), lost, "", "pose of the standard; is the probe switched on?"]]
-    rows += [[str(int(t.label)), t.what, f"{t.limit:g}", _REMEDY[t.label]] for t in tests]
+    for label in dict.fromkeys(test.label for test in tests):
+        own = [test for test in tests if test.label == label]
+        what = "; ".join(dict.fromkeys(test.what for test in own))
+        limits = "; ".join(dict.fromkeys(f"{test.limit:g}" for test in own))
+        rows.append([str(int(label)), what, limits, _REMEDY[label]])
     columns = ("alarm", "test", "tolerance", "check")
     return Section("Alarms", table=Table(columns, rows, _ALARMS.format(missed=missed)))
 

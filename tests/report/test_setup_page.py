@@ -12,7 +12,7 @@ from matstd.artefact.reach import TABLE, Solid
 from matstd.artefact.tool import Probe
 from matstd.probe_paths.campaign import setup_tolerance
 from matstd.probe_paths.emit import Feeds, make_programs
-from matstd.probe_paths.language import Dialect
+from matstd.probe_paths.language import Dialect, read_dialect
 from matstd.probe_paths.locate import companions
 from matstd.probe_paths.plan import PlanOptions, Refusal, plan_touches, requests_at
 from matstd.probe_paths.stations import Station
@@ -60,6 +60,17 @@ def test_every_alarm_of_the_programs_is_explained(sheet):
     stated = {row[0]: row for row in table.rows[table.headings :]}
     assert set(stated) == alarms
     assert all(len(row[-1]) > 10 for row in stated.values())
+
+
+def test_linuxcnc_has_a_sheet_with_its_own_alarms(golden, tmp_path):
+    dialect, plan = read_dialect("linuxcnc"), golden.plan()
+    others = companions(plan, dialect, Feeds(), 80.0)
+    programs = golden.programs("linuxcnc")
+    page = write_setup_page(tmp_path, [Station(plan, dialect, programs)], 0, others)
+    (table,) = [t for t in shown_tables(page.read_text(encoding="utf-8")) if t.section == "Alarms"]
+    stated = [row[0] for row in table.rows[table.headings :]]
+    alarms = re.findall(r"O(\d+) SUB \((?:ALARM|NOTRIGGER)", programs.programs[0].text)
+    assert sorted(stated) == sorted(alarms)
 
 
 def test_hashes_programs_and_place_are_those_of_the_head(sheet):
