@@ -68,7 +68,8 @@ def _run_file(args: Namespace) -> Step:
     if not Path(args.output).exists():
         return None
     standard = getattr(args, "standard", None)
-    probed = ["--standard", standard] if standard else []
+    # `import --standard` says what its lists are, and names no file
+    probed = ["--standard", standard] if isinstance(standard, str) else []
     words = called("diagnose", args.output, *probed, AUTO, "-o", _beside(args.output, "diagnosis"))
     return words, "what the model lacks"
 

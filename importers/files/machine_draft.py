@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from matstd.twin.errors import DesignError
+from matstd.twin.files.slips import machine_questions
 from matstd.twin.machine import Chain
 from matstd.twin.record import Run
 from matstd.twin.text import toml_value
@@ -31,6 +32,10 @@ def machine_text(chain: Chain, source: str, is_known: bool = False) -> str:
         *(() if is_known else (SIDES,)),
         f'chain = "{chain.notation}"',
     ]
+    # a travel of some data may be short beside the others; it is no mistake of a user
+    asked = machine_questions(chain, is_placed=bool(np.any(chain.table_origin)))
+    if keys := list(dict.fromkeys(str(one.facts["key"]) for one in asked)):
+        lines.append(f"confirmed = {toml_value(keys)}")
     for axis in chain.programmed_axes:
         link = chain.link(axis)
         low, high = (end / link.unit for end in link.range)

@@ -117,6 +117,13 @@ def test_the_next_command_is_one_that_the_command_line_reads(call, tmp_path, mon
     assert following(next_line(parsed(shlex.split(call)))) in COMMANDS
 
 
+def test_a_list_of_a_standard_is_no_file_of_one(tmp_path, monkeypatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("run.csv").write_text("", encoding="utf-8")
+    args = parsed(["import", "plate.csv", "--standard", "-o", "run.csv"])
+    assert "diagnose run.csv --auto -o diagnosis " in next_line(args)
+
+
 def test_the_next_command_writes_over_nothing(tmp_path, monkeypatch) -> None:
     monkeypatch.chdir(tmp_path)
     Path("run.csv").write_text("", encoding="utf-8")
