@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from matstd.twin.errors import DesignError
-from matstd.twin.files.slips import machine_questions
+from matstd.twin.files import machine_questions
 from matstd.twin.machine import Chain
 from matstd.twin.record import Run
 from matstd.twin.text import toml_value

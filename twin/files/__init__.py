@@ -12,7 +12,7 @@ from matstd.twin.files.pose_file import read_poses, reading_columns
 from matstd.twin.files.run_file import SetupTable, read_run
 from matstd.twin.files.run_writer import write_run
 from matstd.twin.files.sensor_file import SensorRecord, read_sensors
-from matstd.twin.files.slips import refuse_unit_slips
+from matstd.twin.files.slips import machine_questions, refuse_unit_slips
 from matstd.twin.files.table import CsvTable
 from matstd.twin.files.toml import (
     kind_of,
@@ -24,9 +24,31 @@ from matstd.twin.files.toml import (
 from matstd.twin.files.whole import refuse_to_overwrite, write_whole, written_whole
 
 __all__ = [
-    "CsvTable", "MachineTables", "Pair", "SensorRecord", "SetupTable", "Table", "Vector",
-    "checked", "errors_toml", "kind_of", "parse_kind", "read_any_text",
-    "read_errors", "read_machine", "read_poses", "read_run", "read_sensors", "read_text",
-    "read_toml", "reading_columns", "refuse_to_overwrite", "refuse_unit_slips", "results_folder",
-    "write_run", "write_whole", "written_whole",
-]  # fmt: skip
+    "CsvTable",
+    "MachineTables",
+    "Pair",
+    "SensorRecord",
+    "SetupTable",
+    "Table",
+    "Vector",
+    "checked",
+    "errors_toml",
+    "kind_of",
+    "machine_questions",
+    "parse_kind",
+    "read_any_text",
+    "read_errors",
+    "read_machine",
+    "read_poses",
+    "read_run",
+    "read_sensors",
+    "read_text",
+    "read_toml",
+    "reading_columns",
+    "refuse_to_overwrite",
+    "refuse_unit_slips",
+    "results_folder",
+    "write_run",
+    "write_whole",
+    "written_whole",
+]
