@@ -48,10 +48,10 @@ from matstd.twin.files import (
     read_any_text,
     read_poses,
     read_text,
-    refuse_to_overwrite,
     results_folder,
     write_whole,
 )
+from matstd.twin.files.whole import refuse_to_overwrite
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain
 from matstd.twin.model import is_saved

@@ -41,7 +41,8 @@ from matstd.twin.compute import Progress, silent
 from matstd.twin.display import Displayed, html, text
 from matstd.twin.effects import ComponentError, LocationError
 from matstd.twin.errors import BadArgument, BadFile
-from matstd.twin.files import read_any_text, read_errors, refuse_to_overwrite, write_whole
+from matstd.twin.files import read_any_text, read_errors, write_whole
+from matstd.twin.files.whole import refuse_to_overwrite
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain, Family, Ranges
 from matstd.twin.model import Effect

@@ -108,7 +108,8 @@ RACES = """
 import sys
 from pathlib import Path
 from matstd.twin.errors import DesignError
-from matstd.twin.files import results_folder, refuse_to_overwrite, write_whole
+from matstd.twin.files import results_folder
+from matstd.twin.files.whole import refuse_to_overwrite, write_whole
 mine = sys.argv[1]
 for line in sys.stdin:
     kind, name, force = line.rstrip("\\n").split("|")

@@ -6,8 +6,7 @@ from pathlib import Path
 import pytest
 
 from matstd.twin.errors import DesignError
-from matstd.twin.files import refuse_to_overwrite, write_whole
-from matstd.twin.files.whole import refuse_own_input
+from matstd.twin.files.whole import refuse_own_input, refuse_to_overwrite, write_whole
 
 
 def test_a_device_is_no_output(tmp_path: Path) -> None:

@@ -21,7 +21,7 @@ from matstd.twin.files.toml import (
     read_text,
     read_toml,
 )
-from matstd.twin.files.whole import refuse_to_overwrite, write_whole, written_whole
+from matstd.twin.files.whole import write_whole, written_whole
 
 __all__ = [
     "CsvTable",
@@ -45,7 +45,6 @@ __all__ = [
     "read_text",
     "read_toml",
     "reading_columns",
-    "refuse_to_overwrite",
     "refuse_unit_slips",
     "results_folder",
     "write_run",

@@ -75,7 +75,7 @@ def template(kind: str, like: str | None = None) -> str:
 
 def run(args: argparse.Namespace) -> int:
     """Print the file, or write it whole and say what else was written."""
-    from matstd.twin.files import refuse_to_overwrite
+    from matstd.twin.files.whole import refuse_to_overwrite
 
     for option, kind in (("like", "machine"), ("machine", "project")):
         if getattr(args, option) is not None and args.kind != kind:

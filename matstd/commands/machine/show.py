@@ -52,7 +52,7 @@ def run(args: argparse.Namespace) -> int:
     from matstd.effect_kinds import register_effects
     from matstd.progress import stages
     from matstd.report.machine import shown_lines
-    from matstd.twin.files import refuse_to_overwrite
+    from matstd.twin.files.whole import refuse_to_overwrite
 
     if not args.output.endswith(".html"):
         raise BadArgument("output", args.output, "the name of a page, which ends in .html")

@@ -24,7 +24,7 @@ def run(args: argparse.Namespace) -> int:
     """Write dx_um, dy_um, dz_um in the table frame, actual minus nominal."""
     from matstd.api.machines import read_machine, volumetric
     from matstd.progress import stages
-    from matstd.twin.files import refuse_to_overwrite
+    from matstd.twin.files.whole import refuse_to_overwrite
 
     refuse_to_overwrite(args.output, args.force)
     chain = read_machine(args.machine)

@@ -142,7 +142,7 @@ def _add_details(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Write the run file, and a machine file where none was given."""
-    from matstd.twin.files import refuse_to_overwrite
+    from matstd.twin.files.whole import refuse_to_overwrite
 
     path = Path(args.output)
     refuse_to_overwrite(path, args.force)
@@ -205,7 +205,8 @@ def _measured(args: argparse.Namespace, sheets: list[Sheet], output: Path) -> No
     from matstd.commands.measured.kinds import arm, circle, points, positioning
     from matstd.importers import machine_text, with_travels
     from matstd.importers.sheets import timed_by_rows
-    from matstd.twin.files import refuse_to_overwrite, write_run, write_whole
+    from matstd.twin.files import write_run, write_whole
+    from matstd.twin.files.whole import refuse_to_overwrite
     from matstd.twin.numbers import rms
 
     if args.part or args.standard:

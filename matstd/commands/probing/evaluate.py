@@ -104,7 +104,7 @@ def run(args: argparse.Namespace) -> int:
     import numpy as np
 
     from matstd.api.evaluating import evaluate
-    from matstd.twin.files import refuse_to_overwrite
+    from matstd.twin.files.whole import refuse_to_overwrite
     from matstd.twin.numbers import rms
 
     refuse_to_overwrite(args.output, args.force)

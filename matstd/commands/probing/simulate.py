@@ -57,7 +57,7 @@ def run(args: argparse.Namespace) -> int:
     from matstd.api.probing import leaves_no_run, simulate
     from matstd.api.standards import read_standard
     from matstd.progress import stages
-    from matstd.twin.files import refuse_to_overwrite
+    from matstd.twin.files.whole import refuse_to_overwrite
     from matstd.twin.numbers import rms
 
     refuse_to_overwrite(args.output, args.force)

@@ -67,7 +67,7 @@ def run(args: argparse.Namespace) -> int:
     """Write the calibrated standard, or the program, whole or not at all."""
     from matstd.api.standards import as_designed, calibrate
     from matstd.report.task import calibration_lines, verdict_lines
-    from matstd.twin.files import refuse_to_overwrite
+    from matstd.twin.files.whole import refuse_to_overwrite
 
     refuse_to_overwrite(args.output, args.force)
     nominal = as_designed(args.standard)

@@ -58,7 +58,7 @@ def _table(args: argparse.Namespace) -> int:
     """One column a parameter: µm/µm, or µm/µrad for an angular one."""
     from matstd.api.machines import read_machine, sensitivities
     from matstd.progress import stages
-    from matstd.twin.files import refuse_to_overwrite
+    from matstd.twin.files.whole import refuse_to_overwrite
 
     refuse_to_overwrite(args.output, args.force)
     chain = read_machine(args.source)

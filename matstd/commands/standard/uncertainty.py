@@ -29,7 +29,7 @@ def run(args: argparse.Namespace) -> int:
     """Evaluate; the result is written whole or not at all."""
     from matstd.api.standards import uncertainty
     from matstd.effect_kinds import register_effects
-    from matstd.twin.files import refuse_to_overwrite
+    from matstd.twin.files.whole import refuse_to_overwrite
 
     refuse_to_overwrite(args.output, args.force)
     if args.page:
