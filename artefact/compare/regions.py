@@ -14,11 +14,11 @@ import numpy as np
 from matstd.artefact.reach import Requests
 from matstd.artefact.worth import Criterion
 from matstd.information.criteria import Posterior, prior_sd_of_tip
+from matstd.sensitivity.montecarlo import WORST_SHARE
 from matstd.twin.frames import Array
 from matstd.twin.numbers import rms
 from matstd.twin.record import at_poses
 
-_WORST_SHARE = 0.05  # of the poses: the same share as the worst of one machine
 _COVERED_BELOW = 0.1  # of the expected error: where less remains unknown, a pose counts as covered
 
 
@@ -43,7 +43,7 @@ def worst_regions(
         q: Poses over the workspace, (N, A), of the probe.
         recurrence: Share of the machines for which each pose is among the worst, (N,).
     """
-    count = max(int(np.ceil(_WORST_SHARE * len(q))), 1)
+    count = max(int(np.ceil(WORST_SHARE * len(q))), 1)
     worst = np.argsort(-recurrence, kind="stable")[:count]
     reach, model = criterion.reach, criterion.model
     tip = model.tip_columns(at_poses(reach.chain, q[worst], reach.length))

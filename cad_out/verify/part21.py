@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from matstd.cad_out.verify.part21_tolerances import REFERENCE
 from matstd.twin.errors import BadFile
 from matstd.twin.frames import Array
 
@@ -14,7 +15,6 @@ _ENTITY = re.compile(r"#(\d+)\s*=\s*(.*?);\s*(?=#\d+\s*=|ENDSEC)", re.S)
 _FACE = re.compile(r"ADVANCED_FACE\('([^']*)',\(([^)]*)\),#(\d+),\.([TF])\.\)")
 _SPLINE = "B_SPLINE_SURFACE_WITH_KNOTS("
 _BREAK = re.compile(r"('(?:[^']|'')*')|\s*\n\s*")
-_REFERENCE = re.compile(r"#(\d+)")
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,8 +108,8 @@ def read_instances(entities: dict[int, str]) -> dict[str, Instance]:
         relation = entities[_number(fields[0])]
         transformation = re.search(r"WITH_TRANSFORMATION\(#(\d+)\)", relation)
         assert transformation is not None
-        ends = _REFERENCE.findall(entities[int(transformation[1])])
-        origins = [_REFERENCE.findall(entities[int(end)])[0] for end in ends]
+        ends = REFERENCE.findall(entities[int(transformation[1])])
+        origins = [REFERENCE.findall(entities[int(end)])[0] for end in ends]
         placed[usage] = np.subtract(*(_point(entities[int(o)]) for o in origins[::-1]))
     found = {}
     for number, fields in _of_kind(entities, "NEXT_ASSEMBLY_USAGE_OCCURRENCE").items():
@@ -144,7 +144,7 @@ def file_unit_is_millimetre(path: Path) -> bool:
         re.search(r"GLOBAL_UNIT_ASSIGNED_CONTEXT\(\(([^)]*)\)\)", context[1]) if context else None
     )
     lengths = (
-        [units[key] for key in _REFERENCE.findall(assigned[1]) if key in units] if assigned else []
+        [units[key] for key in REFERENCE.findall(assigned[1]) if key in units] if assigned else []
     )
     return bool(lengths) and all("SI_UNIT(.MILLI.,.METRE.)" in unit for unit in lengths)
 
@@ -154,7 +154,7 @@ def _surface(entities: dict[int, str], text: str) -> SplineFace | SphereFace | N
         return _spline(entities, text)
     if text.startswith("SPHERICAL_SURFACE("):
         _, axis, radius = text[len("SPHERICAL_SURFACE(") : -1].split(",")
-        origin = _REFERENCE.findall(entities[int(axis.lstrip("#"))])[0]
+        origin = REFERENCE.findall(entities[int(axis.lstrip("#"))])[0]
         return SphereFace(_point(entities[int(origin)]), float(radius))
     return None
 
@@ -162,7 +162,7 @@ def _surface(entities: dict[int, str], text: str) -> SplineFace | SphereFace | N
 def _spline(entities: dict[int, str], text: str) -> SplineFace:
     """Fields: name, ku, kv, ((poles)), form, 3 flags, multiplicities u, v, knots u, v, kind."""
     fields = _fields(text[len(_SPLINE) : -1])
-    rows = [_REFERENCE.findall(row) for row in fields[3].strip("()").split("),(")]
+    rows = [REFERENCE.findall(row) for row in fields[3].strip("()").split("),(")]
     poles = np.array([[_point(entities[int(key)]) for key in row] for row in rows])
     counts = [np.array(fields[k].strip("()").split(","), dtype=int) for k in (8, 9)]
     values = [np.array(fields[k].strip("()").split(","), dtype=float) for k in (10, 11)]

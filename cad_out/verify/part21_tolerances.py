@@ -17,7 +17,7 @@ _KINDS = {
 _KIND = re.compile(r"\b(" + "|".join(_KINDS) + r")_TOLERANCE\(")
 _VALUE = re.compile(r"TOLERANCE\('[^']*','[^']*',#(\d+),#(\d+)")
 _SYSTEM = re.compile(r"WITH_DATUM_REFERENCE\(\(#(\d+)\)\)")
-_REFERENCE = re.compile(r"#(\d+)")
+REFERENCE = re.compile(r"#(\d+)")
 
 
 def read_tolerances(entities: dict[int, str]) -> list[Tolerance]:
@@ -25,7 +25,7 @@ def read_tolerances(entities: dict[int, str]) -> list[Tolerance]:
     faces = {}
     for entity in entities.values():
         if entity.startswith("GEOMETRIC_ITEM_SPECIFIC_USAGE("):
-            aspect, _, face = (int(r) for r in _REFERENCE.findall(entity))
+            aspect, _, face = (int(r) for r in REFERENCE.findall(entity))
             faces[aspect] = entities[face].split("'")[1]
     found = []
     for entity in entities.values():
@@ -45,8 +45,8 @@ def _letters(entities: dict[int, str], system: int) -> str:
     """Datums of a system in the order of its compartments."""
     compartments = re.findall(r"\(((?:#\d+,?)+)\)\)$", entities[system])
     letters = ""
-    for compartment in _REFERENCE.findall(compartments[0]):
-        datum = _REFERENCE.findall(entities[int(compartment)])[1]
+    for compartment in REFERENCE.findall(compartments[0]):
+        datum = REFERENCE.findall(entities[int(compartment)])[1]
         letters += entities[int(datum)].split("'")[-2]
     return letters
 
@@ -74,14 +74,14 @@ def read_signs(entities: dict[int, str]) -> dict[str, list[Array]]:
     for entity in entities.values():
         if not entity.startswith("DRAUGHTING_MODEL_ITEM_ASSOCIATION("):
             continue
-        said, drawing, callout = (int(r) for r in _REFERENCE.findall(entity))
+        said, drawing, callout = (int(r) for r in REFERENCE.findall(entity))
         # a sign without its statement or its drawing does not count
         if said not in entities or drawing not in drawings:
             continue
         name = entities[callout].split("'")[1]
         at = callout
         while not entities[at].startswith("TESSELLATED_CURVE_SET("):
-            at = int(_REFERENCE.findall(entities[at])[-1])
+            at = int(REFERENCE.findall(entities[at])[-1])
         points, curves = entities[at].split(",", 2)[1:]
         listed = entities[int(points.lstrip("#"))].split(",", 2)[2]
         numbers = np.array(re.findall(r"-?\d+\.\d*(?:E[+-]?\d+)?", listed), dtype=float)

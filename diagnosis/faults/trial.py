@@ -25,7 +25,7 @@ from matstd.diagnosis.faults.suspects import (
     with_setups_placed,
 )
 from matstd.diagnosis.fit import Fit, fit_run, unit_mistake
-from matstd.diagnosis.geometry import FoundNumber
+from matstd.diagnosis.geometry import SETUP_FACTOR, FoundNumber
 from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.regression import PRIOR_DOF, solve
 from matstd.twin.effects import SHIFT_SD, TURN_SD, body_errors, placing_errors
@@ -41,9 +41,6 @@ seconds."""
 
 TRIMMED_SHARE = 0.05  # share of the touches, farthest from a first fit, that do not count
 
-SETUP_FACTOR = 20.0
-"""Factor on the usual freedom of the set-ups (1 mm, 5 mrad). The place of the standard is no
-mistake in the description and must not pass for the zero of a table or the length of a tool."""
 
 MAX_SETUP_COST = 30.0
 """Most log odds that a set-up costs which stands elsewhere than stated by many times its freedom:

@@ -22,13 +22,14 @@ from matstd.diagnosis.geometry.learnt import (
     learnt_geometry,
 )
 from matstd.diagnosis.geometry.quantities import Quantity
-from matstd.diagnosis.geometry.rivals import FoundNumber
+from matstd.diagnosis.geometry.rivals import SETUP_FACTOR, FoundNumber
 from matstd.diagnosis.geometry.rows import (
     Estimate,
     GeometryRow,
 )
 
 __all__ = [
+    "SETUP_FACTOR",
     "Correction",
     "Estimate",
     "FoundNumber",

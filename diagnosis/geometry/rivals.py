@@ -29,7 +29,9 @@ MIN_COST_SHARE = 0.5
 """Share of the cost that a rival must at least take away; what takes less explains nothing."""
 
 SETUP_FACTOR = 20.0
-"""Factor on the usual freedom of the set-ups (1 mm, 5 mrad): they are no part of a machine."""
+"""Factor on the usual freedom of the set-ups (1 mm, 5 mrad): they are no part of a machine. The
+place of the standard is no mistake in the description and must not pass for the zero of a table or
+the length of a tool."""
 
 
 @dataclass(frozen=True, slots=True)

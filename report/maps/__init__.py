@@ -6,7 +6,7 @@ draws. A new map goes into the list in `study_maps.draw_maps`.
 
 from matstd.report.maps.correlation_picture import draw_ties
 from matstd.report.maps.regions_picture import draw_regions
-from matstd.report.maps.study_maps import draw_maps
+from matstd.report.maps.study_maps import draw_maps, shows_more
 from matstd.report.maps.trajectory_pictures import draw_path
 
 __all__ = [
@@ -14,4 +14,5 @@ __all__ = [
     "draw_path",
     "draw_regions",
     "draw_ties",
+    "shows_more",
 ]

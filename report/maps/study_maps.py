@@ -1,5 +1,6 @@
 """Maps of sensitivities and of the volumetric error, for reports (PNG)."""
 
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -98,6 +99,19 @@ def _map(
     )
 
 
+def shows_more(S: Array, shown: Iterable[Array]) -> bool:
+    """Whether a map of S has more than one colour, and differs from those that are shown.
+
+    Args:
+        S: At the places of the map; not a number where the machine does not reach.
+        shown: S of other errors at the same places.
+    """
+    seen = np.isfinite(S)
+    if np.ptp(S[seen]) <= _STILL * max(float(S[seen].max()), 1e-300):
+        return False
+    return all(np.corrcoef(S[seen], other[seen])[0, 1] < _ALIKE for other in shown)
+
+
 def _moving(study: Study, point: PointOverRotary) -> list[Symbol]:
     """Errors of largest share whose S changes as the table turns, no two with the same map."""
     q = point.q[point.reached]
@@ -106,10 +120,7 @@ def _moving(study: Study, point: PointOverRotary) -> list[Symbol]:
     S = sensitivity(study.chain, q, study.workspace.length)
     chosen: list[int] = []
     for i in np.argsort(-study.shares.mean(axis=0), kind="stable"):
-        if np.ptp(S[:, i]) <= _STILL * max(float(S[:, i].max()), 1e-300):
-            continue
-        alike = (float(np.corrcoef(S[:, i], S[:, k])[0, 1]) for k in chosen)
-        if max(alike, default=0.0) < _ALIKE:
+        if shows_more(S[:, i], S.T[chosen]):
             chosen.append(int(i))
         if len(chosen) == _SHOWN:
             break

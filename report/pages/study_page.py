@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from matstd.report.layout import KeyFigure, Page, Picture, Section, Table, write_page
+from matstd.report.maps import shows_more
 from matstd.report.numbers import digits, um
 from matstd.report.scenes import Scene, draw_volumes
 from matstd.report.verdict import study_meaning
@@ -32,8 +33,6 @@ _ORDER = (
     "variance_shares.png",
 )
 _S_SCENES = 3
-_STILL = 0.02  # relative range of S in a volume below which its map would be one colour
-_ALIKE = 0.98  # correlation of two maps of S that show the same
 
 Shown = tuple[str, str]  # file and caption of a picture
 
@@ -191,11 +190,7 @@ def sensitivity_scenes(study: Study, T_table_artefact: Array | None = None) -> l
         if taken or not symbol.is_angular or symbol.family is Family.SETUP:
             continue
         S = box.sensitivity(symbol) / (UM / URAD)
-        seen = np.isfinite(S)
-        if np.ptp(S[seen]) <= _STILL * S[seen].max():
-            continue
-        alike = (float(np.corrcoef(S[seen], other[seen])[0, 1]) for _, other in chosen)
-        if max(alike, default=0.0) < _ALIKE:
+        if shows_more(S, (other for _, other in chosen)):
             chosen.append((symbol, S))
         if len(chosen) == _S_SCENES:
             break
