@@ -127,7 +127,7 @@ class SavedModel(Displayed):
         return (*self.left_out, *self.repeated, *self.refuted)
 
     def doubting(self, refuted: Sequence[EffectOfOtherRun]) -> "SavedModel":
-        """The model with zero in the place of some laws, as unsure as they are large."""
+        """The model with zero instead of some laws, as unsure as they are large."""
         names = {one.effect.name for one in refuted}
         if not names:
             return self

@@ -149,7 +149,7 @@ class Learning:
 
     @property
     def shares(self) -> dict[str, float]:
-        """Share of predictions of every law, and of every effect in the place of one, by name."""
+        """Share of predictions of every law, and of every effect instead of one, by name."""
         out: dict[str, float] = {}
         for share, effects in self._sets:
             for effect in effects:
