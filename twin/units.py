@@ -16,7 +16,7 @@ MINUTE = 60.0
 """One minute in s."""
 HOUR, DAY = 3600.0, 86400.0  # in s
 T_REF = 20.0  # reference temperature of geometrical specifications, degC (ISO 1)
-WHOLE_DEGREES, ROUNDING = 5.0, 0.1
+WHOLE_DEGREES, DEGREES_ROUNDING = 5.0, 0.1
 """Ends of a travel are whole multiples of the first; in radians they are still such multiples
 within the second, degrees, or within half of their last decimal."""
 MIN_DECIMALS = 2
@@ -58,7 +58,7 @@ def meant_in_radians(low: float, high: float) -> tuple[float, float] | None:
     decimals = max(len(f"{v:.6f}".rstrip("0").partition(".")[2]) for v in (low, high))
     if decimals < MIN_DECIMALS or max(-low, high) > FULL_TURN or not low < high:
         return None
-    allowed = max(ROUNDING, 0.5 * 10.0**-decimals / DEG)
+    allowed = max(DEGREES_ROUNDING, 0.5 * 10.0**-decimals / DEG)
     ends = (low / DEG, high / DEG)
     meant = tuple(WHOLE_DEGREES * round(end / WHOLE_DEGREES) for end in ends)
     is_whole = all(abs(e - m) <= allowed for e, m in zip(ends, meant, strict=True))

@@ -49,8 +49,8 @@ def showing_table_poses(
 ) -> Array:
     """Table poses at which a scan of the one face of a standard shows most, the best first.
 
-    Where the table is tilted the probe has room at few places of a face: poses at which it has
-    half as many as at the best one are left out.
+    Where the table is tilted, the probe has room at few places of a face. Poses with less than half
+    the places of the best one are left out.
 
     Args:
         criterion: On the standard.
@@ -61,11 +61,11 @@ def showing_table_poses(
     if len(poses) < 2:
         return poses
     (face,), reach = standard.patches, criterion.reach
-    room = np.array(
-        [len(scanned(face, _TRIED_SCAN, pose[None], reach, standard)) for pose in poses]
-    )
-    tried = spread_poses(poses[2 * room >= room.max()], _TRIED_POSES)
-    lots = [scanned(face, _TRIED_SCAN, pose[None], reach, standard) for pose in tried]
+    scans = {tuple(p): scanned(face, _TRIED_SCAN, p[None], reach, standard) for p in poses}
+    most = max(map(len, scans.values()))
+    roomy = np.array([pose for pose, lot in scans.items() if 2 * len(lot) >= most])
+    tried = spread_poses(roomy, _TRIED_POSES)
+    lots = [scans[tuple(pose)] for pose in tried]
     return tried[showing_poses(criterion, given, lots, effects_at, count)]
 
 

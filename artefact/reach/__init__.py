@@ -11,7 +11,7 @@ from matstd.artefact.reach.datum_ball import DatumBall
 from matstd.artefact.reach.face_of_table import hangs, standing_remarks, table_face
 from matstd.artefact.reach.mesh_cover import mesh_triangles, read_drawn_body
 from matstd.artefact.reach.probe_clearance import ProbeShape, clearance
-from matstd.artefact.reach.touchable import ProbeReach, Requests, joined
+from matstd.artefact.reach.touchable import TRAVEL_ROUNDING, ProbeReach, Requests, joined
 from matstd.artefact.reach.within_reach import (
     ANGLE,
     Limit,
@@ -33,6 +33,7 @@ __all__ = [
     "ANGLE",
     "TABLE",
     "TABLE_RADIUS",
+    "TRAVEL_ROUNDING",
     "Body",
     "Clamping",
     "DatumBall",

@@ -26,7 +26,7 @@ from matstd.twin.units import DEG
 _WORDS = "U200"  # of a reason
 _START_HEIGHT = 400.0  # mm the ball comes down from, far above any standard
 _DESCENT_MARGIN = 1.0  # mm added to the ball on its way down
-ROUNDING = 1e-9
+TRAVEL_ROUNDING = 1e-9
 """mm or rad: a reading at the very end of a travel is inside, whatever its last digit."""
 
 
@@ -222,7 +222,7 @@ class ProbeReach:
     def _excess(self, q: Array) -> Array:
         """How far readings (N, A) are beyond the ends of their travels, (N, A), mm and rad."""
         low, high = np.array([self.chain.link(name).range for name in self.chain.axes]).T
-        return np.maximum(np.maximum(low - q, q - high) - ROUNDING, 0.0)
+        return np.maximum(np.maximum(low - q, q - high) - TRAVEL_ROUNDING, 0.0)
 
     def _out_of_reach(self, one: Requests) -> str:
         """Why one touch is not within angle and travels."""

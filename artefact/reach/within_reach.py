@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from matstd.artefact.layout import Blank
-from matstd.artefact.reach.touchable import ROUNDING, ProbeReach
+from matstd.artefact.reach.touchable import TRAVEL_ROUNDING, ProbeReach
 from matstd.twin.frames import Array, IntArray, Mask
 from matstd.twin.units import DEG
 
@@ -116,7 +116,7 @@ def reach_of(reach: ProbeReach, point: Array, normal: Array, poses: Array) -> Pl
         normal=normal,
         poses=poses,
         limits=tuple(limits),
-        beyond=np.where(far > ROUNDING, far, 0.0),
+        beyond=np.where(far > TRAVEL_ROUNDING, far, 0.0),
     )
 
 

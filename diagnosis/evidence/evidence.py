@@ -25,7 +25,7 @@ MIN_OWN_SHARE = 1e-4
 """Share of the square of a signature that model and other effects must leave. With less, its size
 is a hundred times as uncertain as it would be alone."""
 
-ROUNDING = 1e-6
+EVIDENCE_ROUNDING = 1e-6
 """Difference of log evidence that rounding may make: ten thousand times what is seen."""
 
 
@@ -175,7 +175,7 @@ def ranked(evidence: Array) -> IntArray:
     """
     order = np.argsort(-evidence, kind="stable")
     with np.errstate(invalid="ignore"):  # two that cannot be scored
-        is_next = np.diff(-evidence[order]) > ROUNDING
+        is_next = np.diff(-evidence[order]) > EVIDENCE_ROUNDING
     level = np.concatenate([[0], np.cumsum(is_next)])[: len(order)]
     return np.asarray(order[np.lexsort((order, level))])
 

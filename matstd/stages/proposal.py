@@ -59,7 +59,7 @@ STEP_OF_PLACE, MOST_PLACES = 10.0, 3
 (half a second of processor each)."""
 
 _GRID = 200  # points a side by which areas are counted: to 1 %
-ROUNDING = 1e-6  # by which a travel may miss a whole millimetre or degree
+NEARLY_WHOLE = 1e-6  # by which a travel may miss a whole millimetre or degree
 
 
 @dataclass(frozen=True)
@@ -306,4 +306,7 @@ def workspace(
             inside = np.clip(found[:, chain.axis_index(name)], low, high)
             low, high = inside.min(), inside.max()
         # + 0.0: no minus before a zero in the file
-        yield name, [float(np.ceil(low - ROUNDING)) + 0.0, float(np.floor(high + ROUNDING)) + 0.0]
+        yield (
+            name,
+            [float(np.ceil(low - NEARLY_WHOLE)) + 0.0, float(np.floor(high + NEARLY_WHOLE)) + 0.0],
+        )

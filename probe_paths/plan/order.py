@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from matstd.artefact.reach import TRAVEL_ROUNDING
 from matstd.twin.errors import NotReachable
 from matstd.twin.frames import Array, IntArray
 from matstd.twin.machine import Chain
@@ -21,7 +22,6 @@ LONGEST_TURN = 170.0 * DEG
 """A rotary move is cut into pieces below half a turn, so that M126 cannot change its way."""
 
 _PART, _NO_GAIN = 3, 1e-9  # places that are put elsewhere together; mm
-_ROUNDING = 1e-9  # a reading at the very end of the travel is inside, whatever its last digit, rad
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,7 +94,7 @@ def _visit(
     side = side.copy()
     for i, name in enumerate(chain.rotary_axes):
         low, high = chain.link(name).range
-        low, high = low - _ROUNDING, high + _ROUNDING
+        low, high = low - TRAVEL_ROUNDING, high + TRAVEL_ROUNDING
         where = f"pose {name}{rotary[i] / DEG:+.4f}"
         if not low <= rotary[i] <= high:
             travel = f"{low / DEG:g} to {high / DEG:g} degrees"
