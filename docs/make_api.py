@@ -18,6 +18,7 @@ from pkgutil import iter_modules
 from types import ModuleType
 
 import pdoc
+from faces import face_of
 
 import matstd
 
@@ -72,7 +73,7 @@ ROOMS_HEAD = """\
 ## Rooms
 
 Behind these names stand the rooms of the library. Every room is a package with parts; a part is
-used through the names that its `__init__` lists. [architecture.md](architecture.md) describes how
+used through the names of its face, its `__init__`. [architecture.md](architecture.md) describes how
 the rooms depend on each other, [conventions.md](conventions.md) their frames, signs and units.
 """
 
@@ -210,12 +211,15 @@ def part_lines(name: str) -> list[str]:
 
 def index() -> str:
     """Rooms, parts and names, from bottom to top."""
+    rooms = [importlib.import_module(room) for room in ROOMS]
+    faces = {f"{m.__name__}.{part}" for m in rooms for part in m.PARTS}
+    for face in map(importlib.import_module, faces):
+        face.__all__ = face_of(face)  # pdoc passes over what is imported and in no list
     lines = [HEAD.rstrip("\n"), *door_lines(), ROOMS_HEAD]
-    for room in ROOMS:
-        module = importlib.import_module(room)
-        lines += [f"## {room}", "", first_line(module.__doc__ or ""), ""]
+    for module in rooms:
+        lines += [f"## {module.__name__}", "", first_line(module.__doc__ or ""), ""]
         for part in module.PARTS:
-            lines += part_lines(f"{room}.{part}")
+            lines += part_lines(f"{module.__name__}.{part}")
     return "\n".join(lines)
 
 

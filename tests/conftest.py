@@ -103,7 +103,7 @@ def _as_in_a_test():
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("matstd.progress.PERIOD", 1e6)
         patch.setattr("matstd.twin.beside.CORES", 1)
-        patch.setattr("matstd.report.style.DPI", 60)
+        patch.setattr("matstd.report.style._DPI", 60)
         compiled_count = lengths.compiled_count
         patch.setattr(lengths, "compiled_count", lambda: None)
         yield compiled_count

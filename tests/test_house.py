@@ -12,6 +12,7 @@ from pathlib import Path
 from types import ModuleType
 
 import pytest
+from faces import face_of
 
 ROOT = Path(__file__).parents[1]
 BELOW = {
@@ -235,7 +236,7 @@ def test_parts_are_entered_by_their_faces(room: str) -> None:
                 continue
             where = f"{file}:{node.lineno}"
             assert is_package(name), f"{where}: {name} is not a face"
-            listed = set(getattr(load(name), "__all__", ()))  # a room lists none
+            listed = face_of(load(name))
             for alias in node.names:
                 is_module = (ROOT / name.replace(".", "/") / f"{alias.name}.py").exists()
                 is_part = is_package(f"{name}.{alias.name}")
@@ -258,10 +259,10 @@ FACES = sorted(
 def test_faces_are_short_and_true(name: str) -> None:
     face = load(name)
     assert ast.get_docstring(ast.parse(Path(str(face.__file__)).read_text(encoding="utf-8")))
-    assert len(face.__all__) in FACE, len(face.__all__)
-    assert len(set(face.__all__)) == len(face.__all__)
-    for listed in face.__all__:
-        assert getattr(face, listed) is not None, listed
+    names = face_of(face)
+    assert len(names) in FACE, len(names)
+    for name in names:
+        assert getattr(face, name) is not None, name
 
 
 @pytest.mark.parametrize("room", PARTS)
@@ -279,7 +280,7 @@ def test_parts_are_complete(room: str) -> None:
 def test_no_module_bears_the_name_of_what_its_face_exports(name: str) -> None:
     """`from part import word` would give the module or the function, as imports happened to run."""
     modules = {f.stem for f in (ROOT / name.replace(".", "/")).glob("*.py")}
-    assert not modules & set(load(name).__all__)
+    assert not modules & set(face_of(load(name)))
 
 
 def text_of(node: ast.AST) -> str:
@@ -333,7 +334,7 @@ def test_examples_and_benchmarks_enter_by_faces(folder: str) -> None:
             name = in_house(node.module or "")
             if name.split(".")[0] in PARTS:
                 assert name in VOCABULARY or is_package(name), f"{file}:{node.lineno}: {name}"
-                listed = set(getattr(load(name), "__all__", ()))
+                listed = face_of(load(name))
                 for alias in node.names:
                     assert name in VOCABULARY or alias.name in listed, f"{file}: {alias.name}"
 

@@ -5,37 +5,17 @@ base units; no table of a file leaves this part. A new key is a field of one of 
 of the `Brief`, and a check beside it if it can contradict another.
 """
 
-from matstd.artefact.brief.brief import (
-    Brief,
-    Goal,
-    PlacementOptions,
-    ProgramSettings,
-    StudySettings,
-)
-from matstd.artefact.brief.project_file import read_project
-from matstd.artefact.brief.project_writer import project_text
-from matstd.artefact.brief.standard_tables import (
-    FEWEST_PATCHES,
-    FINISHING_RADIUS,
-    LEAST_SIDE,
-    base_of,
-)
-from matstd.artefact.brief.task_file import Task, read_task
-from matstd.artefact.brief.workshop_tables import probe_models
-
-__all__ = [
-    "FEWEST_PATCHES",
-    "FINISHING_RADIUS",
-    "LEAST_SIDE",
-    "Brief",
-    "Goal",
-    "PlacementOptions",
-    "ProgramSettings",
-    "StudySettings",
-    "Task",
-    "base_of",
-    "probe_models",
-    "project_text",
-    "read_project",
-    "read_task",
-]
+from matstd.artefact.brief.brief import Brief as Brief
+from matstd.artefact.brief.brief import Goal as Goal
+from matstd.artefact.brief.brief import PlacementOptions as PlacementOptions
+from matstd.artefact.brief.brief import ProgramSettings as ProgramSettings
+from matstd.artefact.brief.brief import StudySettings as StudySettings
+from matstd.artefact.brief.project_file import read_project as read_project
+from matstd.artefact.brief.project_writer import project_text as project_text
+from matstd.artefact.brief.standard_tables import FEWEST_PATCHES as FEWEST_PATCHES
+from matstd.artefact.brief.standard_tables import FINISHING_RADIUS as FINISHING_RADIUS
+from matstd.artefact.brief.standard_tables import LEAST_SIDE as LEAST_SIDE
+from matstd.artefact.brief.standard_tables import base_of as base_of
+from matstd.artefact.brief.task_file import Task as Task
+from matstd.artefact.brief.task_file import read_task as read_task
+from matstd.artefact.brief.workshop_tables import probe_models as probe_models

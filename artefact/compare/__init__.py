@@ -4,42 +4,20 @@ In: a criterion and the touches of a design. Out: the figures of every `Rival`, 
 touches can and cannot determine (`IdentifiabilityReport`), with what would resolve the rest.
 """
 
-from matstd.artefact.compare.alternatives import Alternative
-from matstd.artefact.compare.comparison import (
-    Compared,
-    Rival,
-    compared,
-    evaluate_rival,
-    prior_rms,
-    random_lots,
-)
-from matstd.artefact.compare.identifiability import IdentifiabilityReport, identifiability_report
-from matstd.artefact.compare.power import (
-    DETECTION_POWER,
-    FALSE_ALARM,
-    MODEL_ERROR,
-    Power,
-    proof_power,
-    task_normals,
-)
-from matstd.artefact.compare.regions import WorstRegions, worst_regions
-
-__all__ = [
-    "DETECTION_POWER",
-    "FALSE_ALARM",
-    "MODEL_ERROR",
-    "Alternative",
-    "Compared",
-    "IdentifiabilityReport",
-    "Power",
-    "Rival",
-    "WorstRegions",
-    "compared",
-    "evaluate_rival",
-    "identifiability_report",
-    "prior_rms",
-    "proof_power",
-    "random_lots",
-    "task_normals",
-    "worst_regions",
-]
+from matstd.artefact.compare.alternatives import Alternative as Alternative
+from matstd.artefact.compare.comparison import Compared as Compared
+from matstd.artefact.compare.comparison import Rival as Rival
+from matstd.artefact.compare.comparison import compared as compared
+from matstd.artefact.compare.comparison import evaluate_rival as evaluate_rival
+from matstd.artefact.compare.comparison import prior_rms as prior_rms
+from matstd.artefact.compare.comparison import random_lots as random_lots
+from matstd.artefact.compare.identifiability import IdentifiabilityReport as IdentifiabilityReport
+from matstd.artefact.compare.identifiability import identifiability_report as identifiability_report
+from matstd.artefact.compare.power import DETECTION_POWER as DETECTION_POWER
+from matstd.artefact.compare.power import FALSE_ALARM as FALSE_ALARM
+from matstd.artefact.compare.power import MODEL_ERROR as MODEL_ERROR
+from matstd.artefact.compare.power import Power as Power
+from matstd.artefact.compare.power import proof_power as proof_power
+from matstd.artefact.compare.power import task_normals as task_normals
+from matstd.artefact.compare.regions import WorstRegions as WorstRegions
+from matstd.artefact.compare.regions import worst_regions as worst_regions

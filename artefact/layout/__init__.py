@@ -4,43 +4,23 @@ In: a `Blank` with its limits. Out: upright candidates with smooth shapes, which
 beside each other, and rivals. A further rival is one more entry in `rivals`.
 """
 
-from matstd.artefact.layout.blank import Blank, Fittings
-from matstd.artefact.layout.post import cantilever_stiffness, post_stiffness
-from matstd.artefact.layout.rival_artefacts import rivals, with_spheres
-from matstd.artefact.layout.side_by_side import beside_balls, most_side_by_side
-from matstd.artefact.layout.upright import (
-    DEFAULT_MODULUS,
-    WALL_GAP,
-    balls_fit,
-    balls_on_posts,
-    faces_beside,
-    faces_fit,
-    freeform_faces,
-    holes_on,
-    least_gap,
-    least_mass,
-)
-from matstd.artefact.layout.wavy import Wave, wavy_face
-
-__all__ = [
-    "DEFAULT_MODULUS",
-    "WALL_GAP",
-    "Blank",
-    "Fittings",
-    "Wave",
-    "balls_fit",
-    "balls_on_posts",
-    "beside_balls",
-    "cantilever_stiffness",
-    "faces_beside",
-    "faces_fit",
-    "freeform_faces",
-    "holes_on",
-    "least_gap",
-    "least_mass",
-    "most_side_by_side",
-    "post_stiffness",
-    "rivals",
-    "wavy_face",
-    "with_spheres",
-]
+from matstd.artefact.layout.blank import Blank as Blank
+from matstd.artefact.layout.blank import Fittings as Fittings
+from matstd.artefact.layout.post import cantilever_stiffness as cantilever_stiffness
+from matstd.artefact.layout.post import post_stiffness as post_stiffness
+from matstd.artefact.layout.rival_artefacts import rivals as rivals
+from matstd.artefact.layout.rival_artefacts import with_spheres as with_spheres
+from matstd.artefact.layout.side_by_side import beside_balls as beside_balls
+from matstd.artefact.layout.side_by_side import most_side_by_side as most_side_by_side
+from matstd.artefact.layout.upright import DEFAULT_MODULUS as DEFAULT_MODULUS
+from matstd.artefact.layout.upright import WALL_GAP as WALL_GAP
+from matstd.artefact.layout.upright import balls_fit as balls_fit
+from matstd.artefact.layout.upright import balls_on_posts as balls_on_posts
+from matstd.artefact.layout.upright import faces_beside as faces_beside
+from matstd.artefact.layout.upright import faces_fit as faces_fit
+from matstd.artefact.layout.upright import freeform_faces as freeform_faces
+from matstd.artefact.layout.upright import holes_on as holes_on
+from matstd.artefact.layout.upright import least_gap as least_gap
+from matstd.artefact.layout.upright import least_mass as least_mass
+from matstd.artefact.layout.wavy import Wave as Wave
+from matstd.artefact.layout.wavy import wavy_face as wavy_face

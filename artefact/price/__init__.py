@@ -4,7 +4,8 @@ In: a `Standard`. Out: a `Price` of each construction, every figure with its unc
 changed in `rates`, a material added in `stocks`.
 """
 
-from matstd.artefact.price.price import Construction, Price, construction_to_make, prices_of
-from matstd.artefact.price.rates import Estimate
-
-__all__ = ["Construction", "Estimate", "Price", "construction_to_make", "prices_of"]
+from matstd.artefact.price.price import Construction as Construction
+from matstd.artefact.price.price import Price as Price
+from matstd.artefact.price.price import construction_to_make as construction_to_make
+from matstd.artefact.price.price import prices_of as prices_of
+from matstd.artefact.price.rates import Estimate as Estimate

@@ -4,22 +4,10 @@ In: a probe, a standard in its set-up, a workshop. Out: the probe as a body, and
 design looks at them before it begins, the planner for every visit of a table pose.
 """
 
-from matstd.artefact.tool.heights import (
-    OVERSHOOT,
-    home_readings,
-    readings_at,
-    solid_hull,
-    swing_height,
-    top_height,
-)
-from matstd.artefact.tool.probe import Probe
-
-__all__ = [
-    "OVERSHOOT",
-    "Probe",
-    "home_readings",
-    "readings_at",
-    "solid_hull",
-    "swing_height",
-    "top_height",
-]
+from matstd.artefact.tool.heights import OVERSHOOT as OVERSHOOT
+from matstd.artefact.tool.heights import home_readings as home_readings
+from matstd.artefact.tool.heights import readings_at as readings_at
+from matstd.artefact.tool.heights import solid_hull as solid_hull
+from matstd.artefact.tool.heights import swing_height as swing_height
+from matstd.artefact.tool.heights import top_height as top_height
+from matstd.artefact.tool.probe import Probe as Probe

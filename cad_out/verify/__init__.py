@@ -4,7 +4,6 @@ In: a standard and the folder of its files. Out: a `Conformity` with every figur
 `export_standard` moves the files to their names only if all are met.
 """
 
-from matstd.cad_out.verify.conformity import Conformity, measure
-from matstd.cad_out.verify.export import export_standard
-
-__all__ = ["Conformity", "export_standard", "measure"]
+from matstd.cad_out.verify.conformity import Conformity as Conformity
+from matstd.cad_out.verify.conformity import measure as measure
+from matstd.cad_out.verify.export import export_standard as export_standard

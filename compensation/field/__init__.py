@@ -6,42 +6,21 @@ corrects, a program, a table, a service, ends in one thing: readings that are ad
 (`CorrectionFunction`).
 """
 
-from matstd.compensation.field.inverse import Datum, correction, datum_of, deviation_after, shifted
-from matstd.compensation.field.machine_errors import (
-    CorrectionFunction,
-    MachineErrors,
-    actual_tip,
-    deviation,
-)
-from matstd.compensation.field.over_workspace import (
-    Result,
-    Share,
-    UncorrectedError,
-    aligned,
-    contributions,
-    relative_columns,
-    result_of,
-    sample_workspace,
-)
-from matstd.compensation.field.state import State
-
-__all__ = [
-    "CorrectionFunction",
-    "Datum",
-    "MachineErrors",
-    "Result",
-    "Share",
-    "State",
-    "UncorrectedError",
-    "actual_tip",
-    "aligned",
-    "contributions",
-    "correction",
-    "datum_of",
-    "deviation",
-    "deviation_after",
-    "relative_columns",
-    "result_of",
-    "sample_workspace",
-    "shifted",
-]
+from matstd.compensation.field.inverse import Datum as Datum
+from matstd.compensation.field.inverse import correction as correction
+from matstd.compensation.field.inverse import datum_of as datum_of
+from matstd.compensation.field.inverse import deviation_after as deviation_after
+from matstd.compensation.field.inverse import shifted as shifted
+from matstd.compensation.field.machine_errors import CorrectionFunction as CorrectionFunction
+from matstd.compensation.field.machine_errors import MachineErrors as MachineErrors
+from matstd.compensation.field.machine_errors import actual_tip as actual_tip
+from matstd.compensation.field.machine_errors import deviation as deviation
+from matstd.compensation.field.over_workspace import Result as Result
+from matstd.compensation.field.over_workspace import Share as Share
+from matstd.compensation.field.over_workspace import UncorrectedError as UncorrectedError
+from matstd.compensation.field.over_workspace import aligned as aligned
+from matstd.compensation.field.over_workspace import contributions as contributions
+from matstd.compensation.field.over_workspace import relative_columns as relative_columns
+from matstd.compensation.field.over_workspace import result_of as result_of
+from matstd.compensation.field.over_workspace import sample_workspace as sample_workspace
+from matstd.compensation.field.state import State as State

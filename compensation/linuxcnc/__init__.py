@@ -5,12 +5,8 @@ In: a `Service`, and the control's INI file (`Control`). Out: a HAL file and the
 control as external offsets, which are added before kinematics.
 """
 
-from matstd.compensation.linuxcnc.control_files import (
-    HAL_FILE,
-    SOCKET,
-    Control,
-    write_control_files,
-)
-from matstd.compensation.linuxcnc.link import serve_linuxcnc
-
-__all__ = ["HAL_FILE", "SOCKET", "Control", "serve_linuxcnc", "write_control_files"]
+from matstd.compensation.linuxcnc.control_files import HAL_FILE as HAL_FILE
+from matstd.compensation.linuxcnc.control_files import SOCKET as SOCKET
+from matstd.compensation.linuxcnc.control_files import Control as Control
+from matstd.compensation.linuxcnc.control_files import write_control_files as write_control_files
+from matstd.compensation.linuxcnc.link import serve_linuxcnc as serve_linuxcnc

@@ -5,17 +5,10 @@
 server.
 """
 
-from matstd.compensation.service.opcua_server import NAMESPACE, prompt, serve
-from matstd.compensation.service.output import OutputLimits
-from matstd.compensation.service.point_correction import PointCorrection
-from matstd.compensation.service.service import DRIVEN_EVERY, Service
-
-__all__ = [
-    "DRIVEN_EVERY",
-    "NAMESPACE",
-    "OutputLimits",
-    "PointCorrection",
-    "Service",
-    "prompt",
-    "serve",
-]
+from matstd.compensation.service.opcua_server import NAMESPACE as NAMESPACE
+from matstd.compensation.service.opcua_server import prompt as prompt
+from matstd.compensation.service.opcua_server import serve as serve
+from matstd.compensation.service.output import OutputLimits as OutputLimits
+from matstd.compensation.service.point_correction import PointCorrection as PointCorrection
+from matstd.compensation.service.service import DRIVEN_EVERY as DRIVEN_EVERY
+from matstd.compensation.service.service import Service as Service

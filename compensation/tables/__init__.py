@@ -7,28 +7,14 @@ axes (`sinumerik`, `linuxcnc`). A new control is a module with `write` and `read
 `formats.FORMATS`.
 """
 
-from matstd.compensation.tables.by_name import point_spacing
-from matstd.compensation.tables.formats import (
-    FORMATS,
-    Harmful,
-    VerifiedTables,
-    refuse_harmful,
-    verify_tables,
-    write_tables,
-)
-from matstd.compensation.tables.header import Header, hashed, header_of
-from matstd.compensation.tables.result_file import write_table_results
-
-__all__ = [
-    "FORMATS",
-    "Harmful",
-    "Header",
-    "VerifiedTables",
-    "hashed",
-    "header_of",
-    "point_spacing",
-    "refuse_harmful",
-    "verify_tables",
-    "write_table_results",
-    "write_tables",
-]
+from matstd.compensation.tables.by_name import point_spacing as point_spacing
+from matstd.compensation.tables.formats import FORMATS as FORMATS
+from matstd.compensation.tables.formats import Harmful as Harmful
+from matstd.compensation.tables.formats import VerifiedTables as VerifiedTables
+from matstd.compensation.tables.formats import refuse_harmful as refuse_harmful
+from matstd.compensation.tables.formats import verify_tables as verify_tables
+from matstd.compensation.tables.formats import write_tables as write_tables
+from matstd.compensation.tables.header import Header as Header
+from matstd.compensation.tables.header import hashed as hashed
+from matstd.compensation.tables.header import header_of as header_of
+from matstd.compensation.tables.result_file import write_table_results as write_table_results

@@ -5,38 +5,20 @@ look-alikes, `sizes` numbers that rest on the touches alone, `detectable` what t
 shown, `next_measurement` touches that distinguish look-alikes, `proof` compares with a known truth.
 """
 
-from matstd.diagnosis.answer.ambiguity import ConfusionClass
-from matstd.diagnosis.answer.candidates import Candidate
-from matstd.diagnosis.answer.comparison import Comparison, GroupResidual, compare
-from matstd.diagnosis.answer.detectable import Detectable
-from matstd.diagnosis.answer.next_measurement import Plan
-from matstd.diagnosis.answer.parts import (
-    GeometryPart,
-    NamedEffect,
-    Remainder,
-    VerdictParts,
-)
-from matstd.diagnosis.answer.run_diagnosis import diagnose
-from matstd.diagnosis.answer.steps import Step
-from matstd.diagnosis.answer.trend import RunErrors, Trend
-from matstd.diagnosis.answer.verdict import Diagnosis, Verdict
-
-__all__ = [
-    "Candidate",
-    "Comparison",
-    "ConfusionClass",
-    "Detectable",
-    "Diagnosis",
-    "GeometryPart",
-    "GroupResidual",
-    "NamedEffect",
-    "Plan",
-    "Remainder",
-    "RunErrors",
-    "Step",
-    "Trend",
-    "Verdict",
-    "VerdictParts",
-    "compare",
-    "diagnose",
-]
+from matstd.diagnosis.answer.ambiguity import ConfusionClass as ConfusionClass
+from matstd.diagnosis.answer.candidates import Candidate as Candidate
+from matstd.diagnosis.answer.comparison import Comparison as Comparison
+from matstd.diagnosis.answer.comparison import GroupResidual as GroupResidual
+from matstd.diagnosis.answer.comparison import compare as compare
+from matstd.diagnosis.answer.detectable import Detectable as Detectable
+from matstd.diagnosis.answer.next_measurement import Plan as Plan
+from matstd.diagnosis.answer.parts import GeometryPart as GeometryPart
+from matstd.diagnosis.answer.parts import NamedEffect as NamedEffect
+from matstd.diagnosis.answer.parts import Remainder as Remainder
+from matstd.diagnosis.answer.parts import VerdictParts as VerdictParts
+from matstd.diagnosis.answer.run_diagnosis import diagnose as diagnose
+from matstd.diagnosis.answer.steps import Step as Step
+from matstd.diagnosis.answer.trend import RunErrors as RunErrors
+from matstd.diagnosis.answer.trend import Trend as Trend
+from matstd.diagnosis.answer.verdict import Diagnosis as Diagnosis
+from matstd.diagnosis.answer.verdict import Verdict as Verdict

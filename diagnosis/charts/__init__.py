@@ -5,33 +5,19 @@ a `History` with a `ControlChart` for every charted quantity: values, Shewhart l
 come from, steps with their date, or a drift with its rate.
 """
 
-from matstd.diagnosis.charts.chart import ControlChart, LimitSource, Segment
-from matstd.diagnosis.charts.course import ALPHA, Drift, Step
-from matstd.diagnosis.charts.history_file import history_csv, history_table
-from matstd.diagnosis.charts.machine_history import MIN_OCCASIONS, History, history
-from matstd.diagnosis.charts.occasion import (
-    Charted,
-    Occasion,
-    Overall,
-    occasions_of_models,
-    occasions_of_runs,
-)
-
-__all__ = [
-    "ALPHA",
-    "MIN_OCCASIONS",
-    "Charted",
-    "ControlChart",
-    "Drift",
-    "History",
-    "LimitSource",
-    "Occasion",
-    "Overall",
-    "Segment",
-    "Step",
-    "history",
-    "history_csv",
-    "history_table",
-    "occasions_of_models",
-    "occasions_of_runs",
-]
+from matstd.diagnosis.charts.chart import ControlChart as ControlChart
+from matstd.diagnosis.charts.chart import LimitSource as LimitSource
+from matstd.diagnosis.charts.chart import Segment as Segment
+from matstd.diagnosis.charts.course import ALPHA as ALPHA
+from matstd.diagnosis.charts.course import Drift as Drift
+from matstd.diagnosis.charts.course import Step as Step
+from matstd.diagnosis.charts.history_file import history_csv as history_csv
+from matstd.diagnosis.charts.history_file import history_table as history_table
+from matstd.diagnosis.charts.machine_history import MIN_OCCASIONS as MIN_OCCASIONS
+from matstd.diagnosis.charts.machine_history import History as History
+from matstd.diagnosis.charts.machine_history import history as history
+from matstd.diagnosis.charts.occasion import Charted as Charted
+from matstd.diagnosis.charts.occasion import Occasion as Occasion
+from matstd.diagnosis.charts.occasion import Overall as Overall
+from matstd.diagnosis.charts.occasion import occasions_of_models as occasions_of_models
+from matstd.diagnosis.charts.occasion import occasions_of_runs as occasions_of_runs

@@ -6,15 +6,9 @@ was chosen, which from here on is the set that is reported, drawn and saved. Blo
 data are correlated: poses, set-ups, stretches of time longer than the memory of what is left.
 """
 
-from matstd.diagnosis.choice.chosen_set import choice_remarks, with_chosen_set
-from matstd.diagnosis.choice.noise_memory import search_with_memory
-from matstd.diagnosis.choice.prediction import Choice, candidate_effects, chosen_by_prediction
-
-__all__ = [
-    "Choice",
-    "candidate_effects",
-    "choice_remarks",
-    "chosen_by_prediction",
-    "search_with_memory",
-    "with_chosen_set",
-]
+from matstd.diagnosis.choice.chosen_set import choice_remarks as choice_remarks
+from matstd.diagnosis.choice.chosen_set import with_chosen_set as with_chosen_set
+from matstd.diagnosis.choice.noise_memory import search_with_memory as search_with_memory
+from matstd.diagnosis.choice.prediction import Choice as Choice
+from matstd.diagnosis.choice.prediction import candidate_effects as candidate_effects
+from matstd.diagnosis.choice.prediction import chosen_by_prediction as chosen_by_prediction

@@ -8,33 +8,22 @@ model (`DriftLaw`), which `LiveDrift` keeps right while the machine works. A new
 with a function that fits it, and a line in `judged.offered`.
 """
 
-from matstd.diagnosis.drift.clocks import lead
-from matstd.diagnosis.drift.drift_file import read_law, write_drift, write_prediction
-from matstd.diagnosis.drift.drift_law import DriftLaw, drift_law_of
-from matstd.diagnosis.drift.judged import Judged, chosen, judge, offered
-from matstd.diagnosis.drift.live import LiveDrift
-from matstd.diagnosis.drift.log_file import check_alike, read_log, read_probed
-from matstd.diagnosis.drift.probing import ProbedPrediction, predict_with_probings
-from matstd.diagnosis.drift.record import DriftRecord, joined, varying
-
-__all__ = [
-    "DriftLaw",
-    "DriftRecord",
-    "Judged",
-    "LiveDrift",
-    "ProbedPrediction",
-    "check_alike",
-    "chosen",
-    "drift_law_of",
-    "joined",
-    "judge",
-    "lead",
-    "offered",
-    "predict_with_probings",
-    "read_law",
-    "read_log",
-    "read_probed",
-    "varying",
-    "write_drift",
-    "write_prediction",
-]
+from matstd.diagnosis.drift.clocks import lead as lead
+from matstd.diagnosis.drift.drift_file import read_law as read_law
+from matstd.diagnosis.drift.drift_file import write_drift as write_drift
+from matstd.diagnosis.drift.drift_file import write_prediction as write_prediction
+from matstd.diagnosis.drift.drift_law import DriftLaw as DriftLaw
+from matstd.diagnosis.drift.drift_law import drift_law_of as drift_law_of
+from matstd.diagnosis.drift.judged import Judged as Judged
+from matstd.diagnosis.drift.judged import chosen as chosen
+from matstd.diagnosis.drift.judged import judge as judge
+from matstd.diagnosis.drift.judged import offered as offered
+from matstd.diagnosis.drift.live import LiveDrift as LiveDrift
+from matstd.diagnosis.drift.log_file import check_alike as check_alike
+from matstd.diagnosis.drift.log_file import read_log as read_log
+from matstd.diagnosis.drift.log_file import read_probed as read_probed
+from matstd.diagnosis.drift.probing import ProbedPrediction as ProbedPrediction
+from matstd.diagnosis.drift.probing import predict_with_probings as predict_with_probings
+from matstd.diagnosis.drift.record import DriftRecord as DriftRecord
+from matstd.diagnosis.drift.record import joined as joined
+from matstd.diagnosis.drift.record import varying as varying

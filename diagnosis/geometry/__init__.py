@@ -5,46 +5,21 @@ errors and lines of the rotary axes with uncertainty, what they do at the ends o
 changed since a saved model, corrections of the machine file, and the ladder from the set-up alone.
 """
 
-from matstd.diagnosis.geometry.arm_machine import found_arm
-from matstd.diagnosis.geometry.changes import (
-    changed_since,
-    changing,
-    standing,
-    state_of_standing,
-    with_changes,
-)
-from matstd.diagnosis.geometry.corrections import Correction, key_of
-from matstd.diagnosis.geometry.learnt import (
-    LearntGeometry,
-    Rung,
-    changed_runs,
-    geometry_rows,
-    learnt_geometry,
-)
-from matstd.diagnosis.geometry.quantities import Quantity
-from matstd.diagnosis.geometry.rivals import SETUP_FACTOR, FoundNumber
-from matstd.diagnosis.geometry.rows import (
-    Estimate,
-    GeometryRow,
-)
-
-__all__ = [
-    "SETUP_FACTOR",
-    "Correction",
-    "Estimate",
-    "FoundNumber",
-    "GeometryRow",
-    "LearntGeometry",
-    "Quantity",
-    "Rung",
-    "changed_runs",
-    "changed_since",
-    "changing",
-    "found_arm",
-    "geometry_rows",
-    "key_of",
-    "learnt_geometry",
-    "standing",
-    "state_of_standing",
-    "with_changes",
-]
+from matstd.diagnosis.geometry.arm_machine import found_arm as found_arm
+from matstd.diagnosis.geometry.changes import changed_since as changed_since
+from matstd.diagnosis.geometry.changes import changing as changing
+from matstd.diagnosis.geometry.changes import standing as standing
+from matstd.diagnosis.geometry.changes import state_of_standing as state_of_standing
+from matstd.diagnosis.geometry.changes import with_changes as with_changes
+from matstd.diagnosis.geometry.corrections import Correction as Correction
+from matstd.diagnosis.geometry.corrections import key_of as key_of
+from matstd.diagnosis.geometry.learnt import LearntGeometry as LearntGeometry
+from matstd.diagnosis.geometry.learnt import Rung as Rung
+from matstd.diagnosis.geometry.learnt import changed_runs as changed_runs
+from matstd.diagnosis.geometry.learnt import geometry_rows as geometry_rows
+from matstd.diagnosis.geometry.learnt import learnt_geometry as learnt_geometry
+from matstd.diagnosis.geometry.quantities import Quantity as Quantity
+from matstd.diagnosis.geometry.rivals import SETUP_FACTOR as SETUP_FACTOR
+from matstd.diagnosis.geometry.rivals import FoundNumber as FoundNumber
+from matstd.diagnosis.geometry.rows import Estimate as Estimate
+from matstd.diagnosis.geometry.rows import GeometryRow as GeometryRow

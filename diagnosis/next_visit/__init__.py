@@ -5,21 +5,13 @@ how far it separates every rival, and how often it would decide. `offers` has to
 made, `course` what time and sensors do, `hypotheses` what every explanation predicts.
 """
 
-from matstd.diagnosis.next_visit.course import Schedule
-from matstd.diagnosis.next_visit.discrimination import greedy, separation
-from matstd.diagnosis.next_visit.hypotheses import DECIDED
-from matstd.diagnosis.next_visit.offers import candidate_targets, candidate_touches
-from matstd.diagnosis.next_visit.planned_visit import NoPlan, RivalPower, VisitPlan, plan_visit
-
-__all__ = [
-    "DECIDED",
-    "NoPlan",
-    "RivalPower",
-    "Schedule",
-    "VisitPlan",
-    "candidate_targets",
-    "candidate_touches",
-    "greedy",
-    "plan_visit",
-    "separation",
-]
+from matstd.diagnosis.next_visit.course import Schedule as Schedule
+from matstd.diagnosis.next_visit.discrimination import greedy as greedy
+from matstd.diagnosis.next_visit.discrimination import separation as separation
+from matstd.diagnosis.next_visit.hypotheses import DECIDED as DECIDED
+from matstd.diagnosis.next_visit.offers import candidate_targets as candidate_targets
+from matstd.diagnosis.next_visit.offers import candidate_touches as candidate_touches
+from matstd.diagnosis.next_visit.planned_visit import NoPlan as NoPlan
+from matstd.diagnosis.next_visit.planned_visit import RivalPower as RivalPower
+from matstd.diagnosis.next_visit.planned_visit import VisitPlan as VisitPlan
+from matstd.diagnosis.next_visit.planned_visit import plan_visit as plan_visit

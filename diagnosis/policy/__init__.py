@@ -5,6 +5,5 @@ repeats, so that a result says by what it was decided. Sizes of grids and limits
 change the time and not the decision, stand where they are used.
 """
 
-from matstd.diagnosis.policy.policy import POLICY, Policy
-
-__all__ = ["POLICY", "Policy"]
+from matstd.diagnosis.policy.policy import POLICY as POLICY
+from matstd.diagnosis.policy.policy import Policy as Policy

@@ -5,17 +5,11 @@ In: a `Diagnosis` or a `Comparison`. Out: a `Board`: effects to switch (`Switch`
 them; geometry and set-ups are refitted each time. Live pages evaluate them in the browser.
 """
 
-from matstd.diagnosis.reduced.board import Board, compared_board, diagnosed_board, learnt_board
-from matstd.diagnosis.reduced.matrices import Errors, Matrices, Reduced
-from matstd.diagnosis.reduced.switches import Switch
-
-__all__ = [
-    "Board",
-    "Errors",
-    "Matrices",
-    "Reduced",
-    "Switch",
-    "compared_board",
-    "diagnosed_board",
-    "learnt_board",
-]
+from matstd.diagnosis.reduced.board import Board as Board
+from matstd.diagnosis.reduced.board import compared_board as compared_board
+from matstd.diagnosis.reduced.board import diagnosed_board as diagnosed_board
+from matstd.diagnosis.reduced.board import learnt_board as learnt_board
+from matstd.diagnosis.reduced.matrices import Errors as Errors
+from matstd.diagnosis.reduced.matrices import Matrices as Matrices
+from matstd.diagnosis.reduced.matrices import Reduced as Reduced
+from matstd.diagnosis.reduced.switches import Switch as Switch

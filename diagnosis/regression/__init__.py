@@ -5,46 +5,22 @@ that were left out, gross errors, and noise that remembers, with a `Whitener` th
 independent. Nothing here knows a machine.
 """
 
-from matstd.diagnosis.regression.f_test import f_probability, f_tail
-from matstd.diagnosis.regression.gross import (
-    GrossErrors,
-    find_gross,
-    robust_scale,
-    shots,
-)
-from matstd.diagnosis.regression.linear import LeftOut, Solution, left_out, solve
-from matstd.diagnosis.regression.memory import (
-    Memory,
-    Whitener,
-    likely_memory,
-    whitener,
-)
-from matstd.diagnosis.regression.noise import (
-    PRIOR_DOF,
-    Noise,
-    noise_factor,
-    places_of,
-    replicate_factor,
-)
-
-__all__ = [
-    "PRIOR_DOF",
-    "GrossErrors",
-    "LeftOut",
-    "Memory",
-    "Noise",
-    "Solution",
-    "Whitener",
-    "f_probability",
-    "f_tail",
-    "find_gross",
-    "left_out",
-    "likely_memory",
-    "noise_factor",
-    "places_of",
-    "replicate_factor",
-    "robust_scale",
-    "shots",
-    "solve",
-    "whitener",
-]
+from matstd.diagnosis.regression.f_test import f_probability as f_probability
+from matstd.diagnosis.regression.f_test import f_tail as f_tail
+from matstd.diagnosis.regression.gross import GrossErrors as GrossErrors
+from matstd.diagnosis.regression.gross import find_gross as find_gross
+from matstd.diagnosis.regression.gross import robust_scale as robust_scale
+from matstd.diagnosis.regression.gross import shots as shots
+from matstd.diagnosis.regression.linear import LeftOut as LeftOut
+from matstd.diagnosis.regression.linear import Solution as Solution
+from matstd.diagnosis.regression.linear import left_out as left_out
+from matstd.diagnosis.regression.linear import solve as solve
+from matstd.diagnosis.regression.memory import Memory as Memory
+from matstd.diagnosis.regression.memory import Whitener as Whitener
+from matstd.diagnosis.regression.memory import likely_memory as likely_memory
+from matstd.diagnosis.regression.memory import whitener as whitener
+from matstd.diagnosis.regression.noise import PRIOR_DOF as PRIOR_DOF
+from matstd.diagnosis.regression.noise import Noise as Noise
+from matstd.diagnosis.regression.noise import noise_factor as noise_factor
+from matstd.diagnosis.regression.noise import places_of as places_of
+from matstd.diagnosis.regression.noise import replicate_factor as replicate_factor

@@ -4,23 +4,14 @@ In: a `Fit`. Out: `Remark`s, which carry numbers; `matstd.report.words` makes th
 Something new to notice is a member of `What`, and a line in `run_remarks` that makes it.
 """
 
-from matstd.diagnosis.remarks.body_size import BodySize, body_sizes
-from matstd.diagnosis.remarks.order import JumpInOrder
-from matstd.diagnosis.remarks.other_run import EffectOfOtherRun
-from matstd.diagnosis.remarks.remark_kinds import Noticed, What, noticed, short_beam
-from matstd.diagnosis.remarks.run_remarks import Remark, remarks
-from matstd.diagnosis.remarks.turns import HarmonicsAlike
-
-__all__ = [
-    "BodySize",
-    "EffectOfOtherRun",
-    "HarmonicsAlike",
-    "JumpInOrder",
-    "Noticed",
-    "Remark",
-    "What",
-    "body_sizes",
-    "noticed",
-    "remarks",
-    "short_beam",
-]
+from matstd.diagnosis.remarks.body_size import BodySize as BodySize
+from matstd.diagnosis.remarks.body_size import body_sizes as body_sizes
+from matstd.diagnosis.remarks.order import JumpInOrder as JumpInOrder
+from matstd.diagnosis.remarks.other_run import EffectOfOtherRun as EffectOfOtherRun
+from matstd.diagnosis.remarks.remark_kinds import Noticed as Noticed
+from matstd.diagnosis.remarks.remark_kinds import What as What
+from matstd.diagnosis.remarks.remark_kinds import noticed as noticed
+from matstd.diagnosis.remarks.remark_kinds import short_beam as short_beam
+from matstd.diagnosis.remarks.run_remarks import Remark as Remark
+from matstd.diagnosis.remarks.run_remarks import remarks as remarks
+from matstd.diagnosis.remarks.turns import HarmonicsAlike as HarmonicsAlike

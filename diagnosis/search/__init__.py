@@ -6,45 +6,27 @@ idea and the way through, `selection` the moves, `members` the tests, `further_p
 asks for, `screening` what makes long runs affordable, `edges` gross errors that are none.
 """
 
-from matstd.diagnosis.search.further_parts import tables_along
-from matstd.diagnosis.search.members import EffectSubset, Member, Verified, explained
-from matstd.diagnosis.search.missing_driver import follows_driver, is_own_sensor, likeliest_drift
-from matstd.diagnosis.search.refine import refined, refined_set
-from matstd.diagnosis.search.screening import MOST_SETS, WHOLE_BELOW, Budget, Library
-from matstd.diagnosis.search.search_loop import (
-    SearchState,
-    best_set,
-    clearly_best,
-    most_evident,
-    refined_named,
-    searched,
-)
-from matstd.diagnosis.search.selection import Search, is_series
-from matstd.diagnosis.search.task import FOUND_PRIOR_FACTOR, DiagnosisTask
-
-__all__ = [
-    "FOUND_PRIOR_FACTOR",
-    "MOST_SETS",
-    "WHOLE_BELOW",
-    "Budget",
-    "DiagnosisTask",
-    "EffectSubset",
-    "Library",
-    "Member",
-    "Search",
-    "SearchState",
-    "Verified",
-    "best_set",
-    "clearly_best",
-    "explained",
-    "follows_driver",
-    "is_own_sensor",
-    "is_series",
-    "likeliest_drift",
-    "most_evident",
-    "refined",
-    "refined_named",
-    "refined_set",
-    "searched",
-    "tables_along",
-]
+from matstd.diagnosis.search.further_parts import tables_along as tables_along
+from matstd.diagnosis.search.members import EffectSubset as EffectSubset
+from matstd.diagnosis.search.members import Member as Member
+from matstd.diagnosis.search.members import Verified as Verified
+from matstd.diagnosis.search.members import explained as explained
+from matstd.diagnosis.search.missing_driver import follows_driver as follows_driver
+from matstd.diagnosis.search.missing_driver import is_own_sensor as is_own_sensor
+from matstd.diagnosis.search.missing_driver import likeliest_drift as likeliest_drift
+from matstd.diagnosis.search.refine import refined as refined
+from matstd.diagnosis.search.refine import refined_set as refined_set
+from matstd.diagnosis.search.screening import MOST_SETS as MOST_SETS
+from matstd.diagnosis.search.screening import WHOLE_BELOW as WHOLE_BELOW
+from matstd.diagnosis.search.screening import Budget as Budget
+from matstd.diagnosis.search.screening import Library as Library
+from matstd.diagnosis.search.search_loop import SearchState as SearchState
+from matstd.diagnosis.search.search_loop import best_set as best_set
+from matstd.diagnosis.search.search_loop import clearly_best as clearly_best
+from matstd.diagnosis.search.search_loop import most_evident as most_evident
+from matstd.diagnosis.search.search_loop import refined_named as refined_named
+from matstd.diagnosis.search.search_loop import searched as searched
+from matstd.diagnosis.search.selection import Search as Search
+from matstd.diagnosis.search.selection import is_series as is_series
+from matstd.diagnosis.search.task import FOUND_PRIOR_FACTOR as FOUND_PRIOR_FACTOR
+from matstd.diagnosis.search.task import DiagnosisTask as DiagnosisTask

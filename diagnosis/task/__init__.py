@@ -5,15 +5,9 @@ task, and how well the features are calibrated. Out: a `TaskUncertainty`, the bu
 expanded uncertainty, and what it leaves of a tolerance (`Guarded`).
 """
 
-from matstd.diagnosis.task.decision import guarded
-from matstd.diagnosis.task.uncertainty import LEVEL, TaskUncertainty, task_uncertainty
-from matstd.diagnosis.task.visits import Visits, visits_of
-
-__all__ = [
-    "LEVEL",
-    "TaskUncertainty",
-    "Visits",
-    "guarded",
-    "task_uncertainty",
-    "visits_of",
-]
+from matstd.diagnosis.task.decision import guarded as guarded
+from matstd.diagnosis.task.uncertainty import LEVEL as LEVEL
+from matstd.diagnosis.task.uncertainty import TaskUncertainty as TaskUncertainty
+from matstd.diagnosis.task.uncertainty import task_uncertainty as task_uncertainty
+from matstd.diagnosis.task.visits import Visits as Visits
+from matstd.diagnosis.task.visits import visits_of as visits_of

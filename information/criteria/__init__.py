@@ -5,17 +5,13 @@ choice of touches can be made for. A new criterion is a new `Measure` (`measures
 the two tangents (`tangents.py`).
 """
 
-from matstd.information.criteria.design_criterion import (
-    DesignCriterion,
-    five_criteria,
-    mean_prediction,
-    robust,
-    with_potential,
-)
-from matstd.information.criteria.posterior import Posterior, prior_sd_of_tip, whitened
-from matstd.information.criteria.tangents import RowStep, Tangent
-
-__all__ = [
-    "DesignCriterion", "Posterior", "RowStep", "Tangent", "five_criteria", "mean_prediction",
-    "prior_sd_of_tip", "robust", "whitened", "with_potential",
-]  # fmt: skip
+from matstd.information.criteria.design_criterion import DesignCriterion as DesignCriterion
+from matstd.information.criteria.design_criterion import five_criteria as five_criteria
+from matstd.information.criteria.design_criterion import mean_prediction as mean_prediction
+from matstd.information.criteria.design_criterion import robust as robust
+from matstd.information.criteria.design_criterion import with_potential as with_potential
+from matstd.information.criteria.posterior import Posterior as Posterior
+from matstd.information.criteria.posterior import prior_sd_of_tip as prior_sd_of_tip
+from matstd.information.criteria.posterior import whitened as whitened
+from matstd.information.criteria.tangents import RowStep as RowStep
+from matstd.information.criteria.tangents import Tangent as Tangent

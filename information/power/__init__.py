@@ -5,7 +5,9 @@ measurement. Out: a `FieldTest` with its threshold, and how probably it finds a 
 any deviation of a stated covariance. Exact up to a saddlepoint: nothing is simulated.
 """
 
-from matstd.information.power.quadratic import exceedance, quantile
-from matstd.information.power.smooth_field import FieldTest, decorrelated, field_test, low_rank
-
-__all__ = ["FieldTest", "decorrelated", "exceedance", "field_test", "low_rank", "quantile"]
+from matstd.information.power.quadratic import exceedance as exceedance
+from matstd.information.power.quadratic import quantile as quantile
+from matstd.information.power.smooth_field import FieldTest as FieldTest
+from matstd.information.power.smooth_field import decorrelated as decorrelated
+from matstd.information.power.smooth_field import field_test as field_test
+from matstd.information.power.smooth_field import low_rank as low_rank

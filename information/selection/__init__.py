@@ -6,13 +6,12 @@ best possible (`relaxation`), which also bound what any choice could reach (`cer
 limits how many of a kind are chosen.
 """
 
-from matstd.information.selection.certificate import Certificate, rounded
-from matstd.information.selection.groups import best_groups
-from matstd.information.selection.relaxation import relaxed
-from matstd.information.selection.shares import heaviest
-from matstd.information.selection.touch_selection import Quota, Selection, exchange, fill
-
-__all__ = [
-    "Certificate", "Quota", "Selection", "best_groups", "exchange", "fill", "heaviest",
-    "relaxed", "rounded",
-]  # fmt: skip
+from matstd.information.selection.certificate import Certificate as Certificate
+from matstd.information.selection.certificate import rounded as rounded
+from matstd.information.selection.groups import best_groups as best_groups
+from matstd.information.selection.relaxation import relaxed as relaxed
+from matstd.information.selection.shares import heaviest as heaviest
+from matstd.information.selection.touch_selection import Quota as Quota
+from matstd.information.selection.touch_selection import Selection as Selection
+from matstd.information.selection.touch_selection import exchange as exchange
+from matstd.information.selection.touch_selection import fill as fill

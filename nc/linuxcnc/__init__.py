@@ -8,9 +8,7 @@ from pathlib import Path
 from matstd.twin.errors import BadFile
 from matstd.twin.files import read_text
 
-__all__ = ["Ini", "net", "tool_table", "variables"]
-
-SYSTEMS = 9  # coordinate systems G54 to G59.3
+_SYSTEMS = 9  # coordinate systems G54 to G59.3
 
 
 def variables(offsets: Mapping[int, Sequence[float]]) -> str:
@@ -22,7 +20,7 @@ def variables(offsets: Mapping[int, Sequence[float]]) -> str:
     # 5161, 5181: G28 and G30; 5210 to 5219: G92; 5220: system in force; 5221 + 20 k: its offsets
     values = [*enumerate([0.0] * 9, 5161), *enumerate([0.0] * 9, 5181)]
     values += [*enumerate([0.0] * 10, 5210), (5220, 1.0)]
-    for system in range(SYSTEMS):
+    for system in range(_SYSTEMS):
         rest = [0.0] * 7  # A to W, and the rotation
         xyz = offsets.get(system + 1, (0.0, 0.0, 0.0))
         values += enumerate([*xyz, *rest], 5221 + 20 * system)
@@ -34,7 +32,7 @@ def tool_table(number: int, length: float, radius: float) -> str:
     return f"T{number} P{number} Z{length:.6f} D{2.0 * radius:.6f}\n"
 
 
-def signals(text: str) -> dict[str, str]:
+def _signals(text: str) -> dict[str, str]:
     """Signals of a HAL file, by the pin: a pin is on one signal at most."""
     out: dict[str, str] = {}
     for line in text.splitlines():
@@ -100,5 +98,5 @@ class Ini:
         out: dict[str, str] = {}
         for path in self.hal_files:
             if path.name != but and path.is_file():
-                out |= signals(read_text(path))
+                out |= _signals(read_text(path))
         return out

@@ -6,8 +6,6 @@ the Python of the system, as user interface and as component of the hardware lay
 (`TwinContact`) is asked over a socket where every stroke will meet the surface.
 """
 
-from matstd.probe_paths.linuxcnc.rehearsal import rehearse
-from matstd.probe_paths.linuxcnc.replanned import shortened
-from matstd.probe_paths.linuxcnc.session import installed
-
-__all__ = ["installed", "rehearse", "shortened"]
+from matstd.probe_paths.linuxcnc.rehearsal import rehearse as rehearse
+from matstd.probe_paths.linuxcnc.replanned import shortened as shortened
+from matstd.probe_paths.linuxcnc.session import installed as installed

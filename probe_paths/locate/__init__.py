@@ -6,27 +6,15 @@ the touches of earlier programs, or those of a planned visit (`read_visit`), pla
 (`planned_again`). `companions` are the programs that are run beside those of a plan.
 """
 
-from matstd.probe_paths.locate.beside import RAISED, Companions, companions
-from matstd.probe_paths.locate.find import SPREADS, Found, Spread, find_standard
-from matstd.probe_paths.locate.planned_visit import (
-    PlannedVisit,
-    VisitSchedule,
-    planned_again,
-    read_visit,
-)
-from matstd.probe_paths.locate.search_plan import plan_search
-
-__all__ = [
-    "RAISED",
-    "SPREADS",
-    "Companions",
-    "Found",
-    "PlannedVisit",
-    "Spread",
-    "VisitSchedule",
-    "companions",
-    "find_standard",
-    "plan_search",
-    "planned_again",
-    "read_visit",
-]
+from matstd.probe_paths.locate.beside import RAISED as RAISED
+from matstd.probe_paths.locate.beside import Companions as Companions
+from matstd.probe_paths.locate.beside import companions as companions
+from matstd.probe_paths.locate.find import SPREADS as SPREADS
+from matstd.probe_paths.locate.find import Found as Found
+from matstd.probe_paths.locate.find import Spread as Spread
+from matstd.probe_paths.locate.find import find_standard as find_standard
+from matstd.probe_paths.locate.planned_visit import PlannedVisit as PlannedVisit
+from matstd.probe_paths.locate.planned_visit import VisitSchedule as VisitSchedule
+from matstd.probe_paths.locate.planned_visit import planned_again as planned_again
+from matstd.probe_paths.locate.planned_visit import read_visit as read_visit
+from matstd.probe_paths.locate.search_plan import plan_search as plan_search

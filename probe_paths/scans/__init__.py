@@ -4,6 +4,7 @@ In: points of a scan on a machine, the standard, the probe. Out: a `Run` of mean
 as independent, the set-up fitted, and the noise that the scan shows.
 """
 
-from matstd.probe_paths.scans.evaluation import STRETCH, ScanNoise, ScanPoints, evaluate_scan
-
-__all__ = ["STRETCH", "ScanNoise", "ScanPoints", "evaluate_scan"]
+from matstd.probe_paths.scans.evaluation import STRETCH as STRETCH
+from matstd.probe_paths.scans.evaluation import ScanNoise as ScanNoise
+from matstd.probe_paths.scans.evaluation import ScanPoints as ScanPoints
+from matstd.probe_paths.scans.evaluation import evaluate_scan as evaluate_scan

@@ -4,7 +4,7 @@ In: the brief, the placement, the plan of touches, and the first simulated machi
 identified model. Out: the `LiveView` of the page, with data for `live/pages/design_page.js`.
 """
 
-from matstd.report.design_view.live_design import DesignScene, design_live
-from matstd.report.design_view.volume_error import ErrorField, error_field
-
-__all__ = ["DesignScene", "ErrorField", "design_live", "error_field"]
+from matstd.report.design_view.live_design import DesignScene as DesignScene
+from matstd.report.design_view.live_design import design_live as design_live
+from matstd.report.design_view.volume_error import ErrorField as ErrorField
+from matstd.report.design_view.volume_error import error_field as error_field

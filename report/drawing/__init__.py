@@ -5,7 +5,5 @@ datums, tolerances, roughness, tables of faces, balls and holes with their purpo
 Everything is drawn from the design itself, at its scale, and not from a mesh.
 """
 
-from matstd.report.drawing.drawing import write_drawing
-from matstd.report.drawing.tables import Issuer
-
-__all__ = ["Issuer", "write_drawing"]
+from matstd.report.drawing.drawing import write_drawing as write_drawing
+from matstd.report.drawing.tables import Issuer as Issuer

@@ -13,19 +13,9 @@ from matstd.twin.machine import Chain
 from matstd.twin.model import Effect, Title, is_tunable
 from matstd.twin.words import few
 
-__all__ = [
-    "class_words",
-    "effect_cell",
-    "effect_title",
-    "effect_words",
-    "plan_words",
-    "rival_words",
-    "words_of_name",
-]
+_MAX_WRITTEN_OUT = 4  # bodies, titles or names that are written out; of more, the first ones
 
-MAX_WRITTEN_OUT = 4  # bodies, titles or names that are written out; of more, the first ones
-
-_few = partial(few, most=MAX_WRITTEN_OUT, last="or")
+_few = partial(few, most=_MAX_WRITTEN_OUT, last="or")
 
 _BODIES = {"t": "the tool", "w": "the workpiece", "standard": "the standard", "probe": "the probe"}
 

@@ -4,20 +4,12 @@ In: a `LearntGeometry`, `DescriptionFault`s, a `Trend`. Out: lines for tables an
 to copy into a machine file, sentences on mistakes and changes.
 """
 
-from matstd.report.geometry.copied_numbers import copy_lines
-from matstd.report.geometry.fault_words import fault_sentences
-from matstd.report.geometry.geometry_section import geometry_sections
-from matstd.report.geometry.geometry_words import USUAL, estimate_words, quantity_name, shown_unit
-from matstd.report.geometry.trend_words import change_sentences, console_lines
-
-__all__ = [
-    "USUAL",
-    "change_sentences",
-    "console_lines",
-    "copy_lines",
-    "estimate_words",
-    "fault_sentences",
-    "geometry_sections",
-    "quantity_name",
-    "shown_unit",
-]
+from matstd.report.geometry.copied_numbers import copy_lines as copy_lines
+from matstd.report.geometry.fault_words import fault_sentences as fault_sentences
+from matstd.report.geometry.geometry_section import geometry_sections as geometry_sections
+from matstd.report.geometry.geometry_words import USUAL as USUAL
+from matstd.report.geometry.geometry_words import estimate_words as estimate_words
+from matstd.report.geometry.geometry_words import quantity_name as quantity_name
+from matstd.report.geometry.geometry_words import shown_unit as shown_unit
+from matstd.report.geometry.trend_words import change_sentences as change_sentences
+from matstd.report.geometry.trend_words import console_lines as console_lines

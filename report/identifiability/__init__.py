@@ -4,29 +4,20 @@ Names of parameters, known combinations, freedoms with their causes and remedies
 `identifiability.json` and `identification.json`.
 """
 
-from matstd.report.identifiability.identifiability_file import identifiability_table
-from matstd.report.identifiability.identifiability_words import (
-    combination_words,
-    family_words,
-    freedom_words,
-    gist,
-    pair_words,
-    reason_words,
-    resolution_words,
+from matstd.report.identifiability.identifiability_file import (
+    identifiability_table as identifiability_table,
 )
-from matstd.report.identifiability.identification_file import write_identification
-from matstd.report.identifiability.parameter_words import in_words, short
-
-__all__ = [
-    "combination_words",
-    "family_words",
-    "freedom_words",
-    "gist",
-    "identifiability_table",
-    "in_words",
-    "pair_words",
-    "reason_words",
-    "resolution_words",
-    "short",
-    "write_identification",
-]
+from matstd.report.identifiability.identifiability_words import (
+    combination_words as combination_words,
+)
+from matstd.report.identifiability.identifiability_words import family_words as family_words
+from matstd.report.identifiability.identifiability_words import freedom_words as freedom_words
+from matstd.report.identifiability.identifiability_words import gist as gist
+from matstd.report.identifiability.identifiability_words import pair_words as pair_words
+from matstd.report.identifiability.identifiability_words import reason_words as reason_words
+from matstd.report.identifiability.identifiability_words import resolution_words as resolution_words
+from matstd.report.identifiability.identification_file import (
+    write_identification as write_identification,
+)
+from matstd.report.identifiability.parameter_words import in_words as in_words
+from matstd.report.identifiability.parameter_words import short as short

@@ -1,40 +1,20 @@
 """Laws that were learnt, in words, pictures, on a page, and as a Python file of the user's own."""
 
-from matstd.report.laws.curves import LawCurve, law_curve
-from matstd.report.laws.effect_file import effect_text
-from matstd.report.laws.law_page import law_sections, write_law_page
-from matstd.report.laws.law_words import (
-    held_out_sentence,
-    instead_sentence,
-    law_notes,
-    law_sentence,
-    learnt_words,
-    limits_sentences,
-    no_law_sentence,
-    rival_sentence,
-    short_words,
-    size_words,
-)
-from matstd.report.laws.run_words import second_run_sentence
-from matstd.report.laws.visit_words import visit_lines, visit_sentences
-
-__all__ = [
-    "LawCurve",
-    "effect_text",
-    "held_out_sentence",
-    "instead_sentence",
-    "law_curve",
-    "law_notes",
-    "law_sections",
-    "law_sentence",
-    "learnt_words",
-    "limits_sentences",
-    "no_law_sentence",
-    "rival_sentence",
-    "second_run_sentence",
-    "short_words",
-    "size_words",
-    "visit_lines",
-    "visit_sentences",
-    "write_law_page",
-]
+from matstd.report.laws.curves import LawCurve as LawCurve
+from matstd.report.laws.curves import law_curve as law_curve
+from matstd.report.laws.effect_file import effect_text as effect_text
+from matstd.report.laws.law_page import law_sections as law_sections
+from matstd.report.laws.law_page import write_law_page as write_law_page
+from matstd.report.laws.law_words import held_out_sentence as held_out_sentence
+from matstd.report.laws.law_words import instead_sentence as instead_sentence
+from matstd.report.laws.law_words import law_notes as law_notes
+from matstd.report.laws.law_words import law_sentence as law_sentence
+from matstd.report.laws.law_words import learnt_words as learnt_words
+from matstd.report.laws.law_words import limits_sentences as limits_sentences
+from matstd.report.laws.law_words import no_law_sentence as no_law_sentence
+from matstd.report.laws.law_words import rival_sentence as rival_sentence
+from matstd.report.laws.law_words import short_words as short_words
+from matstd.report.laws.law_words import size_words as size_words
+from matstd.report.laws.run_words import second_run_sentence as second_run_sentence
+from matstd.report.laws.visit_words import visit_lines as visit_lines
+from matstd.report.laws.visit_words import visit_sentences as visit_sentences

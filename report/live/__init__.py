@@ -22,8 +22,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from matstd.twin.words import in_own_unit
 
-__all__ = ["TREE", "packed", "scripted", "style"]
-
 TREE = dict[str, Any]
 """What JSON holds, with packed arrays."""
 

@@ -4,15 +4,8 @@ Each takes a `Study` and a folder, and returns files with captions; none compute
 draws. A new map goes into the list in `study_maps.draw_maps`.
 """
 
-from matstd.report.maps.correlation_picture import draw_ties
-from matstd.report.maps.regions_picture import draw_regions
-from matstd.report.maps.study_maps import draw_maps, shows_more
-from matstd.report.maps.trajectory_pictures import draw_path
-
-__all__ = [
-    "draw_maps",
-    "draw_path",
-    "draw_regions",
-    "draw_ties",
-    "shows_more",
-]
+from matstd.report.maps.correlation_picture import draw_ties as draw_ties
+from matstd.report.maps.regions_picture import draw_regions as draw_regions
+from matstd.report.maps.study_maps import draw_maps as draw_maps
+from matstd.report.maps.study_maps import shows_more as shows_more
+from matstd.report.maps.trajectory_pictures import draw_path as draw_path

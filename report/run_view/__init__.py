@@ -5,23 +5,11 @@ In: a `Board`, which holds what the error of any set of effects follows from. Ou
 browser.
 """
 
-from matstd.report.run_view.next_step import comparison_step, diagnosis_step
-from matstd.report.run_view.run_data import Findings
-from matstd.report.run_view.view import (
-    Framed,
-    comparison_view,
-    diagnosis_view,
-    learnt_view,
-    run_view,
-)
-
-__all__ = [
-    "Findings",
-    "Framed",
-    "comparison_step",
-    "comparison_view",
-    "diagnosis_step",
-    "diagnosis_view",
-    "learnt_view",
-    "run_view",
-]
+from matstd.report.run_view.next_step import comparison_step as comparison_step
+from matstd.report.run_view.next_step import diagnosis_step as diagnosis_step
+from matstd.report.run_view.run_data import Findings as Findings
+from matstd.report.run_view.view import Framed as Framed
+from matstd.report.run_view.view import comparison_view as comparison_view
+from matstd.report.run_view.view import diagnosis_view as diagnosis_view
+from matstd.report.run_view.view import learnt_view as learnt_view
+from matstd.report.run_view.view import run_view as run_view

@@ -19,34 +19,10 @@ from matstd.twin.units import DEG
 from matstd.twin.words import LENGTHS, in_own_unit
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+    from matplotlib.figure import Figure as Figure
 else:  # matplotlib takes a second to load, and is loaded inside the functions that draw
     Figure = Any
 
-__all__ = [
-    "BLUE",
-    "DIVERGING",
-    "FAINT",
-    "GREEN",
-    "INK",
-    "LINE",
-    "NEUTRAL",
-    "ORANGE",
-    "RED",
-    "SOFT",
-    "WASH",
-    "WIDTH",
-    "Figure",
-    "axis_of",
-    "axis_title",
-    "figure",
-    "nothing",
-    "plain",
-    "reading_label",
-    "robust_limit",
-    "save",
-    "series",
-]
 
 INK, SOFT, LINE, WASH = "#1c2430", "#7d8794", "#d8dee6", "#f4f6f9"
 """Letters, what stands back, grids, and the ground of what is bare."""
@@ -54,10 +30,10 @@ INK, SOFT, LINE, WASH = "#1c2430", "#7d8794", "#d8dee6", "#f4f6f9"
 FAINT, NEUTRAL = "#9aa4b1", "#c3cad3"
 """Single touches behind their means; bars of what is not singled out."""
 
-BLUE, ORANGE, GREEN, RED, PURPLE = "#0072b2", "#e69f00", "#009e73", "#d55e00", "#aa4499"
+BLUE, ORANGE, GREEN, RED = "#0072b2", "#e69f00", "#009e73", "#d55e00"
 
 _SERIES = (
-    BLUE, ORANGE, GREEN, PURPLE, RED, "#56b4e9",
+    BLUE, ORANGE, GREEN, "#aa4499", RED, "#56b4e9",
     "#8c564b", "#999933", "#44546a", "#e78ac3", "#117733", "#b2abd2",
 )  # fmt: skip
 """The first six are Okabe and Ito's, distinguishable by colour-blind readers; more than twelve
@@ -91,14 +67,14 @@ def series(k: int) -> str:
 WIDTH = 10.0
 """Width of a picture, inch: pages shrink all pictures alike, so letters are equally large."""
 
-DPI = 140  # 1400 dots across: sharp on the 190 mm of a printed page (190 dpi)
+_DPI = 140  # 1400 dots across: sharp on the 190 mm of a printed page (190 dpi)
 
 
 def figure(
     height: float, width: float = WIDTH, layout: Literal["constrained"] | None = "constrained"
 ) -> Figure:
     """Empty figure that belongs to no window system, inch."""
-    from matplotlib.figure import Figure
+    from matplotlib.figure import Figure as Figure
 
     return Figure(figsize=(width, height), layout=layout, facecolor="white")
 
@@ -111,7 +87,7 @@ def save(drawn: Figure, path: str | Path) -> None:
     if in_own_unit(LENGTHS) != LENGTHS:
         for text in drawn.findobj(Text):
             text.set_text(in_own_unit(text.get_text()))
-    drawn.set_dpi(DPI)
+    drawn.set_dpi(_DPI)
     with written_whole(path) as part:
         FigureCanvasAgg(drawn).print_png(part)
 

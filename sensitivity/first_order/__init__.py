@@ -5,13 +5,16 @@ parameter, its covariance over a population and the distribution of its length. 
 where is looked.
 """
 
-from matstd.sensitivity.first_order.indices import covariance, rms, variance_parts, variance_shares
-from matstd.sensitivity.first_order.jacobians import jacobian, jacobian_by_parameter, sensitivity
-from matstd.sensitivity.first_order.normal_lengths import NormalLength, normal_length
-from matstd.sensitivity.first_order.workspace import Box, Workspace, latin_hypercube, section
-
-__all__ = [
-    "Box", "NormalLength", "Workspace", "covariance", "jacobian", "jacobian_by_parameter",
-    "latin_hypercube", "normal_length", "rms", "section", "sensitivity", "variance_parts",
-    "variance_shares",
-]  # fmt: skip
+from matstd.sensitivity.first_order.indices import covariance as covariance
+from matstd.sensitivity.first_order.indices import rms as rms
+from matstd.sensitivity.first_order.indices import variance_parts as variance_parts
+from matstd.sensitivity.first_order.indices import variance_shares as variance_shares
+from matstd.sensitivity.first_order.jacobians import jacobian as jacobian
+from matstd.sensitivity.first_order.jacobians import jacobian_by_parameter as jacobian_by_parameter
+from matstd.sensitivity.first_order.jacobians import sensitivity as sensitivity
+from matstd.sensitivity.first_order.normal_lengths import NormalLength as NormalLength
+from matstd.sensitivity.first_order.normal_lengths import normal_length as normal_length
+from matstd.sensitivity.first_order.workspace import Box as Box
+from matstd.sensitivity.first_order.workspace import Workspace as Workspace
+from matstd.sensitivity.first_order.workspace import latin_hypercube as latin_hypercube
+from matstd.sensitivity.first_order.workspace import section as section

@@ -4,24 +4,22 @@ A new effect is a new file here and one line in `matstd.twin.library.catalogue`;
 fit, the search and the reports know it from then on.
 """
 
-from matstd.twin.effects.geometric import ComponentError, HigherOrder, component
-from matstd.twin.effects.location import LocationError
-from matstd.twin.effects.periodic import MAX_OVERTONES, usual_distance
-from matstd.twin.effects.probe import ProbeRadius, normal_in_tool
-from matstd.twin.effects.repeated import MARK, Change, Repeated, repeat
-from matstd.twin.effects.setup_error import (
-    SHIFT_SD,
-    TURN_SD,
-    Free,
-    body_errors,
-    further_styli,
-    placing_errors,
-    setup_errors,
-)
-
-__all__ = [
-    "MARK", "MAX_OVERTONES", "SHIFT_SD", "TURN_SD", "Change", "ComponentError", "Free",
-    "HigherOrder", "LocationError", "ProbeRadius", "Repeated", "body_errors", "component",
-    "further_styli", "normal_in_tool", "placing_errors", "repeat", "setup_errors",
-    "usual_distance",
-]  # fmt: skip
+from matstd.twin.effects.geometric import ComponentError as ComponentError
+from matstd.twin.effects.geometric import HigherOrder as HigherOrder
+from matstd.twin.effects.geometric import component as component
+from matstd.twin.effects.location import LocationError as LocationError
+from matstd.twin.effects.periodic import MAX_OVERTONES as MAX_OVERTONES
+from matstd.twin.effects.periodic import usual_distance as usual_distance
+from matstd.twin.effects.probe import ProbeRadius as ProbeRadius
+from matstd.twin.effects.probe import normal_in_tool as normal_in_tool
+from matstd.twin.effects.repeated import MARK as MARK
+from matstd.twin.effects.repeated import Change as Change
+from matstd.twin.effects.repeated import Repeated as Repeated
+from matstd.twin.effects.repeated import repeat as repeat
+from matstd.twin.effects.setup_error import SHIFT_SD as SHIFT_SD
+from matstd.twin.effects.setup_error import TURN_SD as TURN_SD
+from matstd.twin.effects.setup_error import Free as Free
+from matstd.twin.effects.setup_error import body_errors as body_errors
+from matstd.twin.effects.setup_error import further_styli as further_styli
+from matstd.twin.effects.setup_error import placing_errors as placing_errors
+from matstd.twin.effects.setup_error import setup_errors as setup_errors

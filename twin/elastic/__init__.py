@@ -4,9 +4,7 @@ One kind a file, as in `effects`; `section` and `beam` are the mechanics. Weight
 a material, so a `beam` is stated by the user and never proposed.
 """
 
-from matstd.twin.elastic.body import short_beams
-from matstd.twin.elastic.materials import Material, material, material_names
-
-__all__ = [
-    "Material", "material", "material_names", "short_beams",
-]  # fmt: skip
+from matstd.twin.elastic.body import short_beams as short_beams
+from matstd.twin.elastic.materials import Material as Material
+from matstd.twin.elastic.materials import material as material
+from matstd.twin.elastic.materials import material_names as material_names

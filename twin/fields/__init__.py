@@ -17,13 +17,6 @@ from matstd.twin.machine import Chain, Family, Symbol
 from matstd.twin.record import Touches
 from matstd.twin.words import did_you_mean
 
-__all__ = [
-    "AnySymbol", "Argument", "AxisName", "ComponentSymbol", "LinearAxisName", "Refuse",
-    "SensorName", "check_count", "component_symbol", "components_of", "moved_components",
-    "moving_axes", "moving_linear_axes", "no_values", "read_axis", "read_linear_axis", "refusal",
-    "sensor_record", "sensors", "varies",
-]  # fmt: skip
-
 
 def moving_axes(touches: Touches) -> list[str]:
     """Programmed axes that stood at more than one reading, in chain order."""

@@ -4,11 +4,12 @@ A *drive* is a column of the run that something may follow: a temperature, the s
 a column of the user's own. One kind a file, as in `effects`; `drives` lists those of a run.
 """
 
-from matstd.twin.thermal.drive_columns import CYCLE, OWN, PROGRESS, SPINDLE, drives, is_speed
-from matstd.twin.thermal.follows import follower
-from matstd.twin.thermal.thermal_field import field
-from matstd.twin.thermal.thermal_lag import ThermalLag
-
-__all__ = [
-    "CYCLE", "OWN", "PROGRESS", "SPINDLE", "ThermalLag", "drives", "field", "follower", "is_speed",
-]  # fmt: skip
+from matstd.twin.thermal.drive_columns import CYCLE as CYCLE
+from matstd.twin.thermal.drive_columns import OWN as OWN
+from matstd.twin.thermal.drive_columns import PROGRESS as PROGRESS
+from matstd.twin.thermal.drive_columns import SPINDLE as SPINDLE
+from matstd.twin.thermal.drive_columns import drives as drives
+from matstd.twin.thermal.drive_columns import is_speed as is_speed
+from matstd.twin.thermal.follows import follower as follower
+from matstd.twin.thermal.thermal_field import field as field
+from matstd.twin.thermal.thermal_lag import ThermalLag as ThermalLag
