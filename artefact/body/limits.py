@@ -87,10 +87,7 @@ def check(standard: Standard, limits: Limits) -> None:
     violated.sort(key=lambda c: c.slack / max(abs(c.limit), 1e-9))
     if violated:
         more = f" (and {len(violated) - 1} more)" if len(violated) > 1 else ""
-        raise NotBuildable(
-            f"standard '{standard.name}': {violated[0]}{more}",
-            constraints=violated,
-        )
+        raise NotBuildable(f"standard '{standard.name}': {violated[0]}{more}", constraints=violated)
 
 
 def min_concave_radius(patch: FreeformPatch) -> float:

@@ -182,12 +182,7 @@ def height(
 
 
 def _local(
-    knots_u: Array,
-    knots_v: Array,
-    degree: tuple[int, int],
-    poles: Array,
-    uv: Array,
-    orders: int,
+    knots_u: Array, knots_v: Array, degree: tuple[int, int], poles: Array, uv: Array, orders: int
 ) -> tuple[Array, Array, Array]:
     """B-splines in u and v at each point, and the poles they act on, (N, ku + 1, kv + 1)."""
     first_u, bu = basis(knots_u, degree[0], uv[:, 0], orders)

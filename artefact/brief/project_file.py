@@ -19,12 +19,7 @@ from matstd.artefact.brief.contradictions import (
 )
 from matstd.artefact.brief.errors_table import ErrorsTable, amplitude_slips, expected_errors
 from matstd.artefact.brief.material_table import MaterialTable
-from matstd.artefact.brief.standard_tables import (
-    BlankTable,
-    LimitsTable,
-    ScanTable,
-    StandardTable,
-)
+from matstd.artefact.brief.standard_tables import BlankTable, LimitsTable, ScanTable, StandardTable
 from matstd.artefact.brief.task_file import Task, read_task
 from matstd.artefact.brief.workshop_tables import (
     ProbeTable,
@@ -40,14 +35,7 @@ from matstd.artefact.tool import Probe
 from matstd.artefact.worth import Calibration
 from matstd.sensitivity.montecarlo import MACHINES_A_BATCH
 from matstd.twin.errors import BadFile
-from matstd.twin.files import (
-    SetupTable,
-    Table,
-    checked,
-    read_machine,
-    read_toml,
-    refuse_unit_slips,
-)
+from matstd.twin.files import SetupTable, Table, checked, read_machine, read_toml, refuse_unit_slips
 from matstd.twin.machine import Chain
 from matstd.twin.record import Setup
 from matstd.twin.units import DEG, UM, URAD, doubtful_length

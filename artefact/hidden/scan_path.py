@@ -46,12 +46,7 @@ def scan_path(
 
 
 def write_scan_path(
-    path: Path,
-    face: FreeformPatch,
-    scan: Scan,
-    poses: Array,
-    reach: ProbeReach,
-    standard: Standard,
+    path: Path, face: FreeformPatch, scan: Scan, poses: Array, reach: ProbeReach, standard: Standard
 ) -> int:
     """Write the path; returns its number of points."""
     points, line = scan_path(face, scan, poses, reach, standard)

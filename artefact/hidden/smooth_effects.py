@@ -123,10 +123,7 @@ def possible_places(
 
 
 def hidden_power(
-    criterion: Criterion,
-    measured: Measurement,
-    places: Array,
-    with_power: bool = True,
+    criterion: Criterion, measured: Measurement, places: Array, with_power: bool = True
 ) -> HiddenPower:
     """How surely some measurements show effects that no model has.
 

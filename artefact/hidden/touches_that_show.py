@@ -67,11 +67,7 @@ def showing_touches(
 
 
 def showing_poses(
-    criterion: Criterion,
-    given: Measurement,
-    lots: Sequence[Measurement],
-    places: Array,
-    count: int,
+    criterion: Criterion, given: Measurement, lots: Sequence[Measurement], places: Array, count: int
 ) -> list[int]:
     """Numbers of the lots that show most together beside given measurements, the best first.
 

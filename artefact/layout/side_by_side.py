@@ -11,10 +11,7 @@ from matstd.twin.frames import IntArray, Mask
 
 
 def most_side_by_side(
-    fits: Mask,
-    *wanted: int,
-    kind: IntArray | None = None,
-    starts: int | None = None,
+    fits: Mask, *wanted: int, kind: IntArray | None = None, starts: int | None = None
 ) -> list[int]:
     """Sites that fit beside each other: the number wanted, or the largest set found.
 

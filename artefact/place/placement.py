@@ -96,10 +96,7 @@ class Placement:
 
 
 def design_standard(
-    brief: Brief,
-    rng: np.random.Generator,
-    progress: Progress = silent,
-    poses: Array | None = None,
+    brief: Brief, rng: np.random.Generator, progress: Progress = silent, poses: Array | None = None
 ) -> Placement:
     """Design a standard for a machine.
 

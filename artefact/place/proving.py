@@ -37,11 +37,7 @@ def touches_on_faces(
 
 
 def proving_touches(
-    criterion: Criterion,
-    standard: Standard,
-    tried: Requests,
-    identifying: Requests,
-    count: int,
+    criterion: Criterion, standard: Standard, tried: Requests, identifying: Requests, count: int
 ) -> Requests:
     """Touches that cover the faces evenly, at the most informative table poses.
 

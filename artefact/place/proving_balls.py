@@ -16,12 +16,7 @@ from matstd.artefact.layout import Blank, balls_fit, holes_on
 from matstd.artefact.place.body_choice import assembled
 from matstd.artefact.place.identifying import Base, Identifying
 from matstd.artefact.reach import Requests
-from matstd.artefact.worth import (
-    BallPlaces,
-    Criterion,
-    repaired_touches,
-    touches_to_choose_from,
-)
+from matstd.artefact.worth import BallPlaces, Criterion, repaired_touches, touches_to_choose_from
 from matstd.twin.errors import NotBuildable, NotReachable
 from matstd.twin.frames import Array
 

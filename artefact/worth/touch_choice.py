@@ -221,10 +221,7 @@ def pose_quota(tried: Requests, count: int) -> Quota:
 
 
 def chosen_touches_on(
-    criterion: Criterion,
-    tried: Requests,
-    options: TouchOptions,
-    begin: Mask | None = None,
+    criterion: Criterion, tried: Requests, options: TouchOptions, begin: Mask | None = None
 ) -> tuple[Mask, Certificate]:
     """Single touches, and how near they are to the best that crowd no table pose.
 

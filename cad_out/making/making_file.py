@@ -5,13 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from matstd.artefact.body import Material, Standard
-from matstd.artefact.price import (
-    Construction,
-    Estimate,
-    Price,
-    construction_to_make,
-    prices_of,
-)
+from matstd.artefact.price import Construction, Estimate, Price, construction_to_make, prices_of
 from matstd.cad_out.details import Details, details_of
 from matstd.cad_out.making.cutting import OVERHANG, RADIUS, Cutting, cutting_of
 from matstd.cad_out.making.hints import ROUGHNESS, FaceHint, hints_of

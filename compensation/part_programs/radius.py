@@ -12,14 +12,7 @@ from itertools import groupby
 import numpy as np
 
 from matstd.compensation.part_programs.language import Reading
-from matstd.compensation.part_programs.motion import (
-    Arc,
-    ArcFeed,
-    Item,
-    Keep,
-    Motion,
-    angle_between,
-)
+from matstd.compensation.part_programs.motion import Arc, ArcFeed, Item, Keep, Motion, angle_between
 from matstd.twin.frames import Array
 
 MAX_SMOOTH_SINE = 1e-4

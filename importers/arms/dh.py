@@ -70,9 +70,7 @@ def arm_from_dh(sheet: Sheet, readings: Array, is_modified: bool = False) -> tup
     names = _names(lines)
     axes = {
         name: Axis(
-            range=travels[i],
-            point=_triple(origins[i] - flange),
-            direction=_triple(lines[i]),
+            range=travels[i], point=_triple(origins[i] - flange), direction=_triple(lines[i])
         )
         for i, name in enumerate(names)
     }

@@ -24,14 +24,7 @@ from matstd.twin.errors import DesignError, NotEnoughData
 from matstd.twin.frames import Array, IntArray, inverse
 from matstd.twin.machine import Chain, table_to_tool
 from matstd.twin.numbers import rms
-from matstd.twin.record import (
-    Instrument,
-    Labels,
-    Run,
-    Setup,
-    at_poses,
-    computed_deviation,
-)
+from matstd.twin.record import Instrument, Labels, Run, Setup, at_poses, computed_deviation
 from matstd.twin.units import UM
 
 IMPLAUSIBLE_RMS = 5.0  # deviations (mm rms) beyond those of an uncalibrated arm (about 1 mm)

@@ -11,14 +11,7 @@ from pydantic import Field
 
 from matstd.importers.sheets import ANGLES, Sheet, clock_times, has_clock, unit_of_column
 from matstd.twin.errors import BadFile
-from matstd.twin.files import (
-    Table,
-    checked,
-    read_machine,
-    read_run,
-    read_toml,
-    write_whole,
-)
+from matstd.twin.files import Table, checked, read_machine, read_run, read_toml, write_whole
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain
 from matstd.twin.record import Run

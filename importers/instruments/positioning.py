@@ -38,8 +38,7 @@ SLOPE_TOLERANCE = 0.1
 tenth."""
 
 _TARGET = re.compile(
-    r"target|tgt|soll|nominal|command|set ?p(oin)?t|position|cible|consigne|\bp_?i\b",
-    re.IGNORECASE,
+    r"target|tgt|soll|nominal|command|set ?p(oin)?t|position|cible|consigne|\bp_?i\b", re.IGNORECASE
 )
 _ACTUAL = re.compile(r"actual|measured|ist\b|\bist|réel|mesur", re.IGNORECASE)
 _REFERENCE = re.compile(r"reference\Z|\bref(_pos)?\Z", re.IGNORECASE)

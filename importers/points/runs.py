@@ -93,11 +93,7 @@ def linear_machine(points: PointList, frames: Sequence[OtherFrame] = ()) -> Chai
 
 
 def points_run(
-    points: PointList,
-    meaning: Meaning,
-    chain: Chain,
-    u: float,
-    frames: Sequence[OtherFrame] = (),
+    points: PointList, meaning: Meaning, chain: Chain, u: float, frames: Sequence[OtherFrame] = ()
 ) -> Run:
     """Run of a list of points: a row a measured coordinate, with the direction of that coordinate.
 

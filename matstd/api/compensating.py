@@ -44,13 +44,7 @@ from matstd.twin.compute import Progress, silent
 from matstd.twin.display import Displayed
 from matstd.twin.elastic import short_beams
 from matstd.twin.errors import BadArgument, BadFile, DesignError
-from matstd.twin.files import (
-    read_any_text,
-    read_poses,
-    read_text,
-    results_folder,
-    write_whole,
-)
+from matstd.twin.files import read_any_text, read_poses, read_text, results_folder, write_whole
 from matstd.twin.files.whole import refuse_to_overwrite
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain

@@ -33,13 +33,7 @@ from matstd.probe_paths.control import (
 )
 from matstd.probe_paths.emit import SEARCH, Feeds, ProgramSet, make_programs
 from matstd.probe_paths.language import Dialect, language_of, read_dialect
-from matstd.probe_paths.locate import (
-    PlannedVisit,
-    Spread,
-    find_standard,
-    planned_again,
-    read_visit,
-)
+from matstd.probe_paths.locate import PlannedVisit, Spread, find_standard, planned_again, read_visit
 from matstd.probe_paths.stations import Station, all_programs
 from matstd.report.laws import visit_lines
 from matstd.report.pages import Printer

@@ -301,12 +301,7 @@ def uncertainty(
     found, visits = budgets(seen, piece, KnownPlaces(), task, models)
     sizes = tuple(zip(names, map(len, seen), strict=True))
     return TaskBudget(
-        task=task,
-        standard=piece,
-        found=found,
-        visits=visits,
-        runs=sizes,
-        remarks=tuple(remarks),
+        task=task, standard=piece, found=found, visits=visits, runs=sizes, remarks=tuple(remarks)
     )
 
 

@@ -92,10 +92,7 @@ class Proposal:
 
 
 def propose(
-    machine: Path,
-    named: str,
-    table: tuple[float, ...] | None = None,
-    progress: Progress = silent,
+    machine: Path, named: str, table: tuple[float, ...] | None = None, progress: Progress = silent
 ) -> Proposal:
     """The largest standard up to the usual one that a machine can be probed on.
 

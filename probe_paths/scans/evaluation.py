@@ -21,23 +21,12 @@ from pathlib import Path
 import numpy as np
 
 from matstd.artefact.body import FreeformPatch, Standard
-from matstd.probe_paths.campaign import (
-    LARGEST_GAPS,
-    fitted_setup,
-    touch_uncertainty,
-)
+from matstd.probe_paths.campaign import LARGEST_GAPS, fitted_setup, touch_uncertainty
 from matstd.twin.errors import BadFile
 from matstd.twin.frames import Array, IntArray, apply, inverse
 from matstd.twin.machine import Chain, linear_motion, tip
 from matstd.twin.numbers import rms
-from matstd.twin.record import (
-    Run,
-    Setup,
-    Touches,
-    at_poses,
-    computed_deviation,
-    linear_approach,
-)
+from matstd.twin.record import Run, Setup, Touches, at_poses, computed_deviation, linear_approach
 from matstd.twin.rows import picked
 from matstd.twin.units import UM
 
@@ -222,8 +211,7 @@ def _gaps(
             "direction in which it was",
         )
     beyond = np.any(
-        np.abs(uv) > np.array(patch.half_size) + limit - LARGEST_GAPS[1] + _EDGE_TOLERANCE,
-        axis=1,
+        np.abs(uv) > np.array(patch.half_size) + limit - LARGEST_GAPS[1] + _EDGE_TOLERANCE, axis=1
     )
     far = (np.abs(gap) > limit) | beyond
     if far.any():

@@ -23,12 +23,7 @@ _UNITS = {"mm": ("µm", UM), "rad": ("µrad", URAD), "1": ("ppm", 1e-6)}
 _LARGE = 2.0  # times its usual size from which on a line of a rotary axis is explained
 _TURNS = {"A": "X", "B": "Y", "C": "Z"}  # direction of the rotation that a letter denotes
 
-ARM = (
-    Quantity.JOINT_ZERO,
-    Quantity.LINK_LENGTH,
-    Quantity.LINK_TWIST,
-    Quantity.JOINT_OFFSET,
-)
+ARM = (Quantity.JOINT_ZERO, Quantity.LINK_LENGTH, Quantity.LINK_TWIST, Quantity.JOINT_OFFSET)
 """Results of the calibration of a serial arm."""
 
 USUAL = (Quantity.SQUARENESS, Quantity.SCALE, *ARM)

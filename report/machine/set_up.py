@@ -98,9 +98,6 @@ def _pillar(patch: FreeformPatch) -> Array:
     for edge in (lid[:, 0], lid[-1], lid[::-1, -1], lid[0, ::-1]):
         local = apply(inverse(patch.T_artefact_patch), edge)
         foot = apply(down, local * [1.0, 1.0, 0.0])
-        for t in (
-            (edge[:-1], foot[:-1], foot[1:]),
-            (edge[:-1], foot[1:], edge[1:]),
-        ):
+        for t in ((edge[:-1], foot[:-1], foot[1:]), (edge[:-1], foot[1:], edge[1:])):
             parts.append(np.stack(t, axis=1))
     return np.concatenate(parts)

@@ -70,11 +70,7 @@ def draw_rotary(study: Study) -> Figure:
 
 
 def _map(
-    axes: Any,
-    study: Study,
-    point: PointOverRotary,
-    values: Array,
-    span: tuple[float, float] | None,
+    axes: Any, study: Study, point: PointOverRotary, values: Array, span: tuple[float, float] | None
 ) -> Any:
     """One map; a curve where one axis turns. Returns what a colour bar belongs to."""
     label_a, unit_a = reading_label(study.chain, point.axes[0])
@@ -176,10 +172,7 @@ def draw_maps(
             "Volumetric error against each reading: median over the poses of the mean and of the "
             f"95 % quantile, with the range that holds 80 % of the poses. {sampled}",
         ),
-        (
-            "variance_regions.png",
-            *_regions(study, rng),
-        ),
+        ("variance_regions.png", *_regions(study, rng)),
         (
             "variance_shares.png",
             _shares(study),

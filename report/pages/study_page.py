@@ -76,11 +76,7 @@ def write_study_page(
 
 
 def study_sections(
-    study: Study,
-    pictures: Sequence[Shown],
-    place: str = "",
-    title: str = "",
-    shown_first: str = "",
+    study: Study, pictures: Sequence[Shown], place: str = "", title: str = "", shown_first: str = ""
 ) -> list[Section]:
     """Sampling, every map, and the errors that dominate in each region.
 

@@ -52,12 +52,7 @@ def _minutes(brief: Brief, placement: Placement, plan: TouchPlan) -> dict[str, f
         seconds = np.nan
         if rival.body is not None:
             seconds = probing_time(
-                rival.body,
-                brief.chain,
-                plan.probe,
-                brief.setup,
-                rival.touches,
-                plan.options,
+                rival.body, brief.chain, plan.probe, brief.setup, rival.touches, plan.options
             )
         found[rival.name] = float(seconds) / MINUTE
     return found

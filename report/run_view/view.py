@@ -62,9 +62,7 @@ def run_view(
         curves: Of laws among its effects, by their names.
     """
     return LiveView(
-        style=style(),
-        place=_PLACE,
-        script=scripted("run_page", run_data(board, findings, curves)),
+        style=style(), place=_PLACE, script=scripted("run_page", run_data(board, findings, curves))
     )
 
 

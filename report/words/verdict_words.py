@@ -8,12 +8,7 @@ from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.laws import Learning
 from matstd.diagnosis.policy import POLICY
 from matstd.report.effects import class_words, words_of_name
-from matstd.report.laws import (
-    held_out_sentence,
-    instead_sentence,
-    law_sentence,
-    rival_sentence,
-)
+from matstd.report.laws import held_out_sentence, instead_sentence, law_sentence, rival_sentence
 from matstd.report.numbers import digits, microns
 from matstd.report.words.diagnosis_words import noise_words, sizes, stated_noise, structure_clause
 from matstd.twin.units import DEG

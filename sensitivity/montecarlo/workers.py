@@ -91,10 +91,7 @@ def _by_cluster(
 
 
 def _window(
-    submit: Callable[[Job], Any],
-    jobs: Iterable[Job],
-    most: int,
-    result: Callable[[Any], Result],
+    submit: Callable[[Job], Any], jobs: Iterable[Job], most: int, result: Callable[[Any], Result]
 ) -> Iterator[Result]:
     """Keep at most `most` jobs under way; results in order."""
     todo = iter(jobs)

@@ -10,7 +10,7 @@ MODEL: Options = {
 
 DATUM: Options = {
     "--datum AXIS=READING ...": "axis readings (mm, degrees) at which the preset is taken "
-    "(default: 0)",
+    "(default: 0)"
 }
 
 DRIVEN: Options = {

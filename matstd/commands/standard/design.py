@@ -62,11 +62,7 @@ def run(args: argparse.Namespace) -> int:
     say_each(standing_remarks(brief.chain, brief.setup.T_table_artefact))
     with stages(PLAN if brief.chain.rotary_axes else LINEAR_PLAN) as progress:
         made = project.design(
-            args.output,
-            force=args.force,
-            progress=progress,
-            scheduler=args.scheduler,
-            pdf=args.pdf,
+            args.output, force=args.force, progress=progress, scheduler=args.scheduler, pdf=args.pdf
         )
     built, *others = design_lines(made.placement, brief.ranges)
     say(built, style="bold")
