@@ -163,7 +163,7 @@ def door_lines() -> list[str]:
     functions = {n: t for n, t in things.items() if inspect.isroutine(t)}
     lines, long = [], []
     for name, thing in {**functions, **things}.items():
-        place = importlib.import_module(f"matstd.{matstd._MODULES[name]}")
+        place = importlib.import_module(matstd._MODULES[name])
         described = pdoc.doc.Module(place).get(name)
         text = described.docstring if described else ""
         lines.append(f"| `{signature(name, thing)}` | {first_line(text)} |")

@@ -11,10 +11,12 @@ are the units that files and figures have. Names are loaded when they are used. 
 library, `matstd.twin` and so on, stand behind them (docs/api.md).
 """
 
+import ast
 from importlib import import_module
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-if TYPE_CHECKING:  # `as` the same name: it is there for others
+if TYPE_CHECKING:  # `as` the same name exports it (PEP 484)
     from matstd.api.compensating import Compensation as Compensation
     from matstd.api.compensating import ProgramOptions as ProgramOptions
     from matstd.api.compensating import compensate as compensate
@@ -74,50 +76,14 @@ if TYPE_CHECKING:  # `as` the same name: it is there for others
     from matstd.twin.units import UM as UM
     from matstd.twin.units import URAD as URAD
 
-_PLACES = {
-    "api.compensating": ("Compensation", "ProgramOptions", "compensate"),
-    "api.designing": ("Project", "Sensitivities"),
-    "api.diagnosing": ("Comparison", "Diagnosis", "compare", "diagnose"),
-    "api.drifting": ("DriftLaws", "DriftPrediction", "learn_drift", "predict_drift"),
-    "api.learning": ("LearntLaws", "learn"),
-    "api.machines": (
-        "machine_file",
-        "machine_names",
-        "read_machine",
-        "sensitivities",
-        "volumetric",
-    ),
-    "api.evaluating": ("Evaluation", "evaluate"),
-    "api.probing": ("Simulation", "simulate", "virtual_machine"),
-    "api.replanning": ("Replanned", "replan"),
-    "api.runs": ("read_run",),
-    "effect_kinds": ("register_effects",),
-    "api.showing": ("MachinePage", "show"),
-    "api.standards": (
-        "Calibration",
-        "TaskBudget",
-        "calibrate",
-        "cmm_program",
-        "read_standard",
-        "uncertainty",
-    ),
-    "api.trending": ("trend",),
-    "artefact.body": ("Standard",),
-    "compensation.field": ("State",),
-    "diagnosis.answer": ("Verdict",),
-    "diagnosis.files": ("SavedModel", "read_model"),
-    "diagnosis.fit": ("Fit",),
-    "report.pages": ("Design",),
-    "twin.errors": ("BadArgument", "BadFile", "DesignError", "NotEnoughData"),
-    "twin.files": ("write_run",),
-    "twin.machine": ("Chain",),
-    "twin.model": ("Effect", "Model"),
-    "twin.record": ("Run",),
-    "twin.units": ("DEG", "MINUTE", "UM", "URAD"),
+_MODULES = {
+    alias.name: str(node.module)
+    for node in ast.walk(ast.parse(Path(__file__).read_text(encoding="utf-8")))
+    if isinstance(node, ast.ImportFrom)
+    for alias in node.names
+    if alias.asname
 }
-"""Names by the module that has them; a test compares them with the imports for type checkers."""
-
-_MODULES = {name: module for module, names in _PLACES.items() for name in names}
+"""Module of every name, read from the imports above: they are the one list of the door."""
 
 __all__ = sorted(_MODULES)
 
@@ -128,7 +94,7 @@ def __getattr__(name: str) -> Any:
     if module is None:
         raise AttributeError(f"module 'matstd' has no attribute {name!r}")
     import_module("matstd.api")  # results show themselves with the sentences of the report
-    value = getattr(import_module(f"matstd.{module}"), name)
+    value = getattr(import_module(module), name)
     globals()[name] = value
     return value
 
