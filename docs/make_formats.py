@@ -20,7 +20,7 @@ MODULES = (
     "matstd.twin.files.error_file",
     "matstd.twin.files.run_file",
     "matstd.artefact.brief.project_file",
-    "matstd.artefact.brief.material_table",
+    "matstd.artefact.brief.standard_tables",
     "matstd.artefact.brief.standard_tables",
     "matstd.artefact.brief.workshop_tables",
     "matstd.artefact.brief.errors_table",

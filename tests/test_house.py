@@ -79,7 +79,7 @@ EXCUSED = {
     "twin/files/run_checks.py": "kinds of unit mistakes, put into one line of refusal",
     "importers/files/machine_draft.py": "comments of a machine file that is written",
     "probe_paths/plan/planner.py": "reason of a refusal, as the reach has it",
-    "probe_paths/control/log_clock.py": "remarks of a reader on single lines, like its refusals",
+    "probe_paths/control/clock.py": "remarks of a reader on single lines, like its refusals",
     "probe_paths/campaign/as_programmed.py": "refusals that name what stood in a log",
     "probe_paths/campaign/log_parts.py": "remarks of a reader on a log, like its refusals",
     "probe_paths/campaign/contact_points.py": "remark of the same reader on a feature out of place",

@@ -16,7 +16,7 @@ from reader_cases import NUMBERS, damage, golden, machine_said, poses_said, read
 from matstd.twin.errors import BadFile, DesignError
 from matstd.twin.files import read_text
 from matstd.twin.files.toml import parse_toml
-from matstd.twin.machine.notation import parse_notation
+from matstd.twin.machine.chain import parse_notation
 
 EACH = 60
 """Inputs of a reader: a few seconds in all."""

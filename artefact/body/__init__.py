@@ -7,6 +7,7 @@ A new kind of face implements `Surface`; a new limit is one more yield in `limit
 
 from matstd.artefact.body.datum import DatumSphere as DatumSphere
 from matstd.artefact.body.datum import MountingHole as MountingHole
+from matstd.artefact.body.datum import fitted_sphere as fitted_sphere
 from matstd.artefact.body.datum import outline_distance as outline_distance
 from matstd.artefact.body.first_contact import contact as contact
 from matstd.artefact.body.freeform import OVERHANG as OVERHANG
@@ -25,7 +26,6 @@ from matstd.artefact.body.material import Material as Material
 from matstd.artefact.body.patch import Meeting as Meeting
 from matstd.artefact.body.solids import BLEND as BLEND
 from matstd.artefact.body.solids import Plate as Plate
-from matstd.artefact.body.sphere_fit import fitted_sphere as fitted_sphere
 from matstd.artefact.body.standard import Base as Base
 from matstd.artefact.body.standard import Core as Core
 from matstd.artefact.body.standard import Standard as Standard

@@ -10,8 +10,8 @@ from matstd.artefact.brief.brief import Goal as Goal
 from matstd.artefact.brief.brief import PlacementOptions as PlacementOptions
 from matstd.artefact.brief.brief import ProgramSettings as ProgramSettings
 from matstd.artefact.brief.brief import StudySettings as StudySettings
+from matstd.artefact.brief.project_file import project_text as project_text
 from matstd.artefact.brief.project_file import read_project as read_project
-from matstd.artefact.brief.project_writer import project_text as project_text
 from matstd.artefact.brief.standard_tables import FEWEST_PATCHES as FEWEST_PATCHES
 from matstd.artefact.brief.standard_tables import FINISHING_RADIUS as FINISHING_RADIUS
 from matstd.artefact.brief.standard_tables import LEAST_SIDE as LEAST_SIDE

@@ -6,14 +6,15 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from matstd.artefact.body import Material
-from matstd.artefact.brief.material_table import MaterialTable, names_with_values
 from matstd.artefact.brief.standard_tables import (
     BASE_THICKNESS,
     LEAST_HEIGHT,
     LEAST_SIDE,
     BlankTable,
     LimitsTable,
+    MaterialTable,
     StandardTable,
+    names_with_values,
 )
 from matstd.artefact.brief.workshop_tables import WorkshopTable
 from matstd.twin.errors import BadFile

@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 from pydantic import Field
 
@@ -18,17 +18,23 @@ from matstd.artefact.brief.contradictions import (
     table_key,
 )
 from matstd.artefact.brief.errors_table import ErrorsTable, amplitude_slips, expected_errors
-from matstd.artefact.brief.material_table import MaterialTable
-from matstd.artefact.brief.standard_tables import BlankTable, LimitsTable, ScanTable, StandardTable
+from matstd.artefact.brief.standard_tables import (
+    BlankTable,
+    LimitsTable,
+    MaterialTable,
+    ScanTable,
+    StandardTable,
+    workspace_ranges,
+)
 from matstd.artefact.brief.task_file import Task, read_task
 from matstd.artefact.brief.workshop_tables import (
     ProbeTable,
+    TableTable,
     WorkshopTable,
     check_workshop,
     checked_probe,
     checked_probes,
 )
-from matstd.artefact.brief.workspace_table import workspace_ranges
 from matstd.artefact.reach import Body, Solid, round_table
 from matstd.artefact.seat import middle_room
 from matstd.artefact.tool import Probe
@@ -38,6 +44,7 @@ from matstd.twin.errors import BadFile
 from matstd.twin.files import SetupTable, Table, checked, read_machine, read_toml, refuse_unit_slips
 from matstd.twin.machine import Chain
 from matstd.twin.record import Setup
+from matstd.twin.text import toml_value
 from matstd.twin.units import DEG, UM, URAD, doubtful_length
 
 RENAMED_KEYS = {
@@ -348,3 +355,39 @@ def _table_face(table: ProjectTable, path: Path) -> Solid:
         raise BadFile(path, "limits.table_radius_mm", f"{table.limits.table_radius_mm:g}",
                       "no such key beside [workshop.table]")  # fmt: skip
     return stated.solid()
+
+
+COMMENT = 46  # column at which comments begin
+
+_OTHERS: dict[str, type[Table]] = {"setup.a": SetupTable, "workshop.table": TableTable}
+"""Tables within tables."""
+
+
+def project_text(tables: Mapping[str, Mapping[str, object]]) -> str:
+    """A commented project file.
+
+    Args:
+        tables: Values by key, by table; "" are the keys of no table. `[workspace]` takes any axis.
+    """
+    out = ""
+    for name, values in tables.items():
+        out += f"\n[{name}]\n" if name else ""
+        known = _model(name).keys() if name != "workspace" else {}
+        for key, value in values.items():
+            unit = "degrees" if key[0] in "ABC" else "mm"
+            what = f"readings of interest, {unit}" if name == "workspace" else known[key].short
+            if key == "format":
+                what = "kind and version of the file"
+            out += f"{f'{key} = {toml_value(value)}':<{COMMENT}} # {what}\n"
+    return out
+
+
+def _model(name: str) -> type[Table]:
+    """The model of a table of a project."""
+    if not name or name in _OTHERS:
+        return _OTHERS.get(name, ProjectTable)
+    kind = ProjectTable.model_fields[name].annotation
+    found = next((k for k in (kind, *get_args(kind)) if isinstance(k, type)), None)
+    assert found is not None
+    assert issubclass(found, Table)
+    return found

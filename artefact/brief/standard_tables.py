@@ -1,6 +1,8 @@
-"""Tables of a project file: the standard, its blank and its limits."""
+"""Tables of a project file: the standard, its material, its blank and its limits; the workspace."""
 
-from typing import Literal
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, Literal
 
 from pydantic import Field
 
@@ -10,8 +12,71 @@ from matstd.artefact.hidden import Scan
 from matstd.artefact.layout import Blank, Fittings
 from matstd.artefact.reach import TABLE_RADIUS
 from matstd.artefact.worth import Calibration, CriterionOptions, TouchOptions
+from matstd.twin.elastic import material_names
+from matstd.twin.errors import BadFile, UnknownAxis
 from matstd.twin.files import Pair, Table
-from matstd.twin.units import DEG, UM
+from matstd.twin.machine import Chain
+from matstd.twin.units import DEG, KG_M3, UM, meant_in_radians
+
+STEEL = "X40Cr14 (1.2083), hardened"  # material of a standard unless another is stated
+
+
+class MaterialTable(Table):
+    """`[material]` of the standard."""
+
+    name: str = STEEL
+    """name, for the drawing"""
+    density_kg_m3: float | None = Field(default=None, ge=500.0, le=23e3, examples=[7800.0])
+    """density. Default: that of the name, see below"""
+    expansion_1_K: float | None = Field(default=None, ge=0.0, le=3e-4, examples=[10.5e-6])  # noqa: N815
+    """coefficient of expansion about 20 °C, 1/K. Default: that of the name"""
+    expansion_u_1_K: float | None = Field(default=None, ge=0.0, le=3e-4, examples=[1e-6])  # noqa: N815
+    """its standard uncertainty, 1/K. Default: that of the name, of a stated expansion a tenth"""
+    modulus_MPa: float | None = Field(default=None, ge=1e3, le=1.2e6, examples=[200e3])  # noqa: N815
+    """Young's modulus. Default: that of the name"""
+    poisson: float = Field(default=0.3, gt=0.0, lt=0.5)
+    """Poisson's ratio, for a stated modulus"""
+    hardness: str = Field(default="", max_length=40)
+    """hardness, for the drawing. Default: that of the name"""
+
+    @property
+    def missing(self) -> tuple[str, ...]:
+        """Keys that a name without usual values has to state, and does not."""
+        if Material.usual_of(self.name) is not None:
+            return ()
+        needed = ("density_kg_m3", "expansion_1_K")
+        return tuple(key for key in needed if getattr(self, key) is None)
+
+    @property
+    def density(self) -> float:
+        """Stated or usual density, kg/mm3; 0 where there is none."""
+        if self.density_kg_m3 is not None:
+            return self.density_kg_m3 * KG_M3
+        usual = Material.usual_of(self.name)
+        return 0.0 if usual is None else usual.density
+
+    def material(self) -> Material:
+        """In base units, of a table in which nothing is missing."""
+        usual = Material.usual_of(self.name)
+        expansion, u = self.expansion_1_K, self.expansion_u_1_K
+        if expansion is None:
+            assert usual is not None
+            expansion, u = usual.expansion, usual.u_expansion if u is None else u
+        return Material(
+            self.name,
+            self.density,
+            expansion,
+            u_expansion=u,
+            modulus=self.modulus_MPa,
+            poisson=self.poisson,
+            hardness=self.hardness or ("" if usual is None else usual.hardness),
+        ).with_usual_modulus()
+
+
+def names_with_values() -> str:
+    """Names of materials with usual values."""
+    return ", ".join(name.replace("-", " ") for name in material_names())
+
 
 BASE_THICKNESS = 30.0  # thickness of the plate of every standard, mm
 CORNER_RADIUS = 25.0  # corner radius of that plate, mm
@@ -199,3 +264,65 @@ class LimitsTable(Table):
 def base_of(sides: tuple[float, float]) -> Base:
     """The plate of a standard with these sides, mm."""
     return Base((0.5 * sides[0], 0.5 * sides[1]), CORNER_RADIUS, BASE_THICKNESS)
+
+
+MAX_READING = 1e6
+"""Largest plausible reading, mm or degrees; larger integers may not convert to floats."""
+
+LEAST_WORKSPACE = 5.0
+"""Smallest range of a linear axis that is of interest, mm: less is one in metres."""
+
+
+def workspace_ranges(
+    stated: Mapping[str, Any], chain: Chain, path: Path
+) -> tuple[dict[str, tuple[float, float]], int]:
+    """Ranges of readings in base units, and the number of poses; raises BadFile."""
+    given = dict(stated)
+    poses = given.pop("poses", 2000)
+    if not isinstance(poses, int) or not 100 <= poses <= 100_000:
+        raise BadFile(path, "workspace.poses", repr(poses), "a whole number, 100 to 100000")
+    out = {axis: chain.link(axis).range for axis in chain.programmed_axes}
+    for axis, pair in given.items():
+        if axis not in chain.programmed_axes:
+            raise BadFile.of(path, UnknownAxis(axis, chain.programmed_axes), within="workspace")
+        low, high = _pair(pair, path, f"workspace.{axis}")
+        factor = 1.0 if chain.link(axis).kind == "linear" else DEG
+        travel = chain.link(axis).range
+        if low * factor < travel[0] or high * factor > travel[1]:
+            raise BadFile(
+                path,
+                f"workspace.{axis}",
+                [low, high],
+                f"within the travel {travel[0] / factor:g} to {travel[1] / factor:g}",
+            )
+        _check_unit(axis, (low, high), (travel[0] / factor, travel[1] / factor), path)
+        out[axis] = (low * factor, high * factor)
+    return out, poses
+
+
+def _check_unit(
+    axis: str, stated: tuple[float, float], travel: tuple[float, float], path: Path
+) -> None:
+    """Refuse a workspace in metres or radians; units of the file."""
+    low, high = stated
+    key, found = f"workspace.{axis}", [low, high]
+    width = f"{high - low:.3g}"
+    if axis[0] in "ABC":
+        meant = meant_in_radians(low, high)
+        if meant is not None and travel[0] <= meant[0] and meant[1] <= travel[1]:
+            ends = f"[{meant[0]:g}, {meant[1]:g}]"
+            raise BadFile(path, key, found, f"degrees, not {width}; is it in radians, {ends}?")
+    elif 0.0 < high - low < LEAST_WORKSPACE:
+        ends = f"[{1e3 * low:g}, {1e3 * high:g}]"
+        raise BadFile(path, key, found, f"mm, not {width} of them; is it in metres, {ends}?")
+
+
+def _pair(value: Any, path: Path, key: str) -> tuple[float, float]:
+    """Two finite numbers, the smaller first."""
+    is_pair = isinstance(value, list) and len(value) == 2
+    if not is_pair or not all(type(v) in (int, float) and abs(v) < MAX_READING for v in value):
+        raise BadFile(path, key, repr(value), "two numbers")
+    low, high = float(value[0]), float(value[1])
+    if not low <= high:
+        raise BadFile(path, key, [low, high], "the smaller number first")
+    return low, high

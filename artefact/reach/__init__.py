@@ -8,7 +8,6 @@ standard is a `Solid` of the `Workshop`.
 
 from matstd.artefact.reach.bodies import Body as Body
 from matstd.artefact.reach.bodies import Clamping as Clamping
-from matstd.artefact.reach.datum_ball import DatumBall as DatumBall
 from matstd.artefact.reach.face_of_table import hangs as hangs
 from matstd.artefact.reach.face_of_table import standing_remarks as standing_remarks
 from matstd.artefact.reach.face_of_table import table_face as table_face
@@ -28,6 +27,7 @@ from matstd.artefact.reach.within_reach import reach_of as reach_of
 from matstd.artefact.reach.within_reach import spread_poses as spread_poses
 from matstd.artefact.reach.workshop import TABLE as TABLE
 from matstd.artefact.reach.workshop import TABLE_RADIUS as TABLE_RADIUS
+from matstd.artefact.reach.workshop import DatumBall as DatumBall
 from matstd.artefact.reach.workshop import Solid as Solid
 from matstd.artefact.reach.workshop import Workshop as Workshop
 from matstd.artefact.reach.workshop import round_table as round_table

@@ -6,7 +6,7 @@ here loads the kernel at import; `run_apart` serves any library that may crash.
 
 from matstd.cad_out.kernel.process import run_apart as run_apart
 from matstd.cad_out.kernel.process import run_kernel as run_kernel
-from matstd.cad_out.kernel.step_mesh import step_triangles as step_triangles
+from matstd.cad_out.kernel.process import step_triangles as step_triangles
 from matstd.cad_out.kernel.worker import FACES as FACES
 from matstd.cad_out.kernel.worker import FACTS as FACTS
 from matstd.cad_out.kernel.worker import MESH as MESH

@@ -1,13 +1,19 @@
 """Work in a process of its own: a crash of the CAD kernel becomes one clear error."""
 
 import os
+import shutil
 import signal
 import subprocess
 import sys
+import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+
+from matstd.cad_out.kernel.worker import MESH, STEP
 from matstd.twin.errors import DesignError, NotBuildable
+from matstd.twin.frames import Array
 
 REFUSAL = "refusal.txt"  # file in the shared folder that holds the reason of a refusal
 
@@ -106,3 +112,21 @@ def run_kernel(
         raise NotBuildable(
             f"the CAD kernel {ending} (task '{task}'); nothing was written", exit_code=ending.code
         )
+
+
+CHORD = 0.3
+"""Distance between triangles and faces that is asked for, mm: less than a pixel of a page."""
+
+
+def step_triangles(path: Path, chord: float = CHORD) -> Array:
+    """Corners of the triangles of all bodies of a STEP file, (T, 3, 3), mm.
+
+    Raises:
+        NotBuildable: A file that the kernel cannot read.
+    """
+    with tempfile.TemporaryDirectory(prefix="step-", ignore_cleanup_errors=True) as name:
+        folder = Path(name)
+        shutil.copyfile(path, folder / STEP)
+        run_kernel("mesh_step", folder, chord)
+        with np.load(folder / MESH) as mesh:
+            return np.asarray(mesh["corners"][mesh["triangles"]], dtype=np.float64)

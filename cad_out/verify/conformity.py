@@ -20,7 +20,6 @@ from matstd.cad_out.meshes import (
     mesh_volume,
     read_stl,
 )
-from matstd.cad_out.verify.annotation_check import missing_annotations
 from matstd.cad_out.verify.face_figures import area_errors, face_deviations
 from matstd.cad_out.verify.part21 import (
     Instance,
@@ -29,6 +28,7 @@ from matstd.cad_out.verify.part21 import (
     read_faces,
     read_instances,
 )
+from matstd.cad_out.verify.part21_tolerances import missing_annotations
 from matstd.twin.errors import NotBuildable
 from matstd.twin.files.whole import write_json
 from matstd.twin.frames import Array

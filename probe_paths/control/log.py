@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from matstd.probe_paths.control.log_clock import LogClock
+from matstd.probe_paths.control.clock import LogClock
 from matstd.probe_paths.language import LOG_HEAD
 from matstd.probe_paths.plan import Heading, parse_heading
 from matstd.twin.errors import BadFile

@@ -13,11 +13,11 @@ from matstd.report.identifiability.identifiability_words import (
 from matstd.report.identifiability.identifiability_words import family_words as family_words
 from matstd.report.identifiability.identifiability_words import freedom_words as freedom_words
 from matstd.report.identifiability.identifiability_words import gist as gist
+from matstd.report.identifiability.identifiability_words import in_words as in_words
 from matstd.report.identifiability.identifiability_words import pair_words as pair_words
 from matstd.report.identifiability.identifiability_words import reason_words as reason_words
 from matstd.report.identifiability.identifiability_words import resolution_words as resolution_words
+from matstd.report.identifiability.identifiability_words import short as short
 from matstd.report.identifiability.identification_file import (
     write_identification as write_identification,
 )
-from matstd.report.identifiability.parameter_words import in_words as in_words
-from matstd.report.identifiability.parameter_words import short as short

@@ -11,10 +11,11 @@ from matstd.report.identifiability.identifiability_words import (
     freedom_words,
     gist,
     group_words,
+    in_words,
     reason_words,
     resolution_words,
+    short,
 )
-from matstd.report.identifiability.parameter_words import in_words, short
 from matstd.report.numbers import shown
 from matstd.twin.machine import Chain, Link
 from matstd.twin.numbers import significant

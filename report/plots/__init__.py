@@ -7,9 +7,9 @@ written whole or not at all.
 from matstd.report.plots.effect_pictures import draw_candidates as draw_candidates
 from matstd.report.plots.effect_pictures import draw_effect as draw_effect
 from matstd.report.plots.effect_pictures import draw_fall as draw_fall
+from matstd.report.plots.effect_pictures import draw_form as draw_form
 from matstd.report.plots.effect_pictures import draw_rivals as draw_rivals
-from matstd.report.plots.form_pictures import draw_form as draw_form
-from matstd.report.plots.form_pictures import is_form as is_form
+from matstd.report.plots.effect_pictures import is_form as is_form
 from matstd.report.plots.pattern_pictures import draw_pattern as draw_pattern
 from matstd.report.plots.pattern_pictures import draw_region as draw_region
 from matstd.report.plots.plan_pictures import draw_order as draw_order

@@ -8,8 +8,7 @@ from briefs import project_with
 
 from matstd.artefact.brief import read_project
 from matstd.artefact.brief.contradictions import Faults, body_faults, material_faults
-from matstd.artefact.brief.material_table import MaterialTable
-from matstd.artefact.brief.standard_tables import BlankTable, LimitsTable
+from matstd.artefact.brief.standard_tables import BlankTable, LimitsTable, MaterialTable
 from matstd.cad_out.making.cutting import CUTTERS
 from matstd.twin.errors import BadFile
 from matstd.twin.files import checked

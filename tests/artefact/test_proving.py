@@ -7,8 +7,12 @@ import pytest
 from scipy.spatial import cKDTree
 
 from matstd.artefact.place import proving_touches
-from matstd.artefact.place.covering import covering, even_shares
-from matstd.artefact.place.proving import informative_touches, touches_on_faces
+from matstd.artefact.place.proving import (
+    covering,
+    even_shares,
+    informative_touches,
+    touches_on_faces,
+)
 from matstd.artefact.reach import Requests
 from matstd.twin.errors import NotReachable
 from matstd.twin.units import DEG

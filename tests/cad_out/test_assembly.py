@@ -23,9 +23,13 @@ from matstd.cad_out.details import (
 from matstd.cad_out.details.places import plan_room
 from matstd.cad_out.details.seats import seat_of
 from matstd.cad_out.meshes import ball_mesh, inner_folds, mesh_volume
-from matstd.cad_out.verify.annotation_check import missing_annotations
 from matstd.cad_out.verify.part21 import read_entities, read_faces, read_instances
-from matstd.cad_out.verify.part21_tolerances import read_notes, read_signs, read_tolerances
+from matstd.cad_out.verify.part21_tolerances import (
+    missing_annotations,
+    read_notes,
+    read_signs,
+    read_tolerances,
+)
 from matstd.twin.errors import NotBuildable
 from matstd.twin.frames import apply, pose
 

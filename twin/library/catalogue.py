@@ -6,6 +6,7 @@ group `material_standard.effects`; from then on it is named, proposed and diagno
 
 import importlib.util
 import inspect
+import math
 import os
 import re
 import sys
@@ -17,6 +18,8 @@ import numpy as np
 
 from matstd.twin.effects import (
     MARK,
+    ComponentError,
+    LocationError,
     Repeated,
     artefact,
     artefact_form,
@@ -36,8 +39,8 @@ from matstd.twin.elastic import body, load_play, stiffness, tool_point
 from matstd.twin.errors import BadFile, DesignError, UnknownEffect
 from matstd.twin.laws import KIND as LAW
 from matstd.twin.library.trial import users_fault
-from matstd.twin.machine import Chain
-from matstd.twin.model import Effect, Kind, Title, columns, is_tunable, own_title
+from matstd.twin.machine import Chain, Family, Ranges, Symbol
+from matstd.twin.model import Effect, Kind, Model, Title, columns, is_tunable, own_title
 from matstd.twin.record import Touches
 from matstd.twin.thermal import (
     axis_warming,
@@ -312,3 +315,43 @@ for _kind in (
     LAW,
 ):
     register(_kind)
+
+
+def component_errors(chain: Chain, symbol: Symbol, sd: float) -> list[Effect]:
+    """One component error in the ordinary distributions.
+
+    On a linear axis linear and parabolic over its range, and sinusoidal with free phase (sine and
+    cosine, one period over the range); on a rotary axis, whose errors repeat every turn, harmonic 1
+    with free phase. A spindle that is not programmed stays at one angle, where an error can only be
+    constant.
+    """
+    link = chain.link(symbol.link)
+    if not link.programmed:
+        return [ComponentError(symbol, "constant", sd=sd)]
+    waves: list[Effect] = [
+        ComponentError(symbol, "sinusoidal", sd=sd),
+        ComponentError(symbol, "sinusoidal", phase=math.pi / 2.0, sd=sd),
+    ]
+    if link.kind == "rotary":
+        return waves
+    return [
+        ComponentError(symbol, "linear", sd=sd),
+        ComponentError(symbol, "parabolic", sd=sd),
+        *waves,
+    ]
+
+
+def ordinary_model(chain: Chain) -> Model:
+    """Every component error in its ordinary distributions and every location error.
+
+    Set-ups of the standard are not in it: they belong to a run (`diagnosis`). The prior standard
+    deviations are those of amplitudes drawn from the default ranges with random sign.
+    """
+    effects: list[Effect] = []
+    for symbol in chain.symbols:
+        sd = Ranges().sd(chain, symbol)
+        if symbol.family is Family.COMPONENT:
+            effects += component_errors(chain, symbol, sd)
+        else:
+            effects.append(LocationError(symbol, sd))
+    return Model(chain, tuple(effects))

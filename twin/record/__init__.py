@@ -14,11 +14,11 @@ from matstd.twin.record.body import StatedBody as StatedBody
 from matstd.twin.record.body import with_body as with_body
 from matstd.twin.record.commanded import with_commanded as with_commanded
 from matstd.twin.record.copies import without_copies as without_copies
-from matstd.twin.record.instrument import Instrument as Instrument
 from matstd.twin.record.run import Run as Run
 from matstd.twin.record.several_runs import joined as joined
 from matstd.twin.record.several_runs import stacked as stacked
 from matstd.twin.record.touches import Body as Body
+from matstd.twin.record.touches import Instrument as Instrument
 from matstd.twin.record.touches import Labels as Labels
 from matstd.twin.record.touches import Setup as Setup
 from matstd.twin.record.touches import Touches as Touches

@@ -12,9 +12,8 @@ import numpy as np
 
 from matstd.twin.frames import Array
 from matstd.twin.machine import linear_motion
-from matstd.twin.record.instrument import Instrument
 from matstd.twin.record.run import Run
-from matstd.twin.record.touches import Touches, computed_deviation
+from matstd.twin.record.touches import Instrument, Touches, computed_deviation
 
 MIN_RANGE_RATIO = 2000.0
 """From this ratio of an axis's range to the median deviation its readings are kept: noise is then
