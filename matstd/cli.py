@@ -48,7 +48,11 @@ FOLDERS = {
         "effects": "list the effects of the library with their formulas and units",
     },
 }
-"""Commands by the folder of `matstd/commands` that has their files, with what each does."""
+"""Commands by the folder of `matstd/commands` that has their files, with what each does.
+
+The file of a command has `add_arguments(parser)`, which states its arguments, and `run(args)`,
+which does its work and returns the exit code.
+"""
 
 COMMANDS = {name: line for folder in FOLDERS.values() for name, line in folder.items()}
 

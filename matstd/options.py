@@ -7,7 +7,7 @@ import math
 import os
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from matstd.twin.errors import DesignError
 
@@ -29,18 +29,12 @@ SHEET_FILES = (
 """Of it and of the programs, what not every run leaves."""
 
 
-Kind = type | str | float | Sequence[str] | Sequence[float]
-"""What an argument takes, as `add_options` explains."""
-
-Options = dict[str, str | tuple[str, Kind]]
-"""Arguments with their meanings for the help, and in a pair what they take."""
+Options = dict[str, str]
+"""Arguments with their meanings for the help, as `add_options` explains."""
 
 
-class Required(NamedTuple):
-    """An option that has to be given."""
-
-    about: str
-    kind: Kind = str
+class Required(str):
+    """Meaning of an option that has to be given."""
 
 
 def add_options(parser: argparse._ActionsContainer, options: Options) -> None:
@@ -50,23 +44,25 @@ def add_options(parser: argparse._ActionsContainer, options: Options) -> None:
     takes one or more, and again where it is given again. `name WORD` is positional, and may be left
     out in brackets.
 
-    In a pair, `int` or `float` is the type of a number, and `list` that of an option that may be
-    repeated. A number, several numbers or a word hold without the option; of several words one is
-    chosen, the first without the option.
+    Behind the name of an option, `:int` or `:float` is the type of a number, and `:list` lets it be
+    repeated. `=1.0` or `=word` holds without the option, for each of several numbers; of
+    `=one|other` one is chosen, the first without the option.
     """
-    for form, meaning in options.items():
-        about, kind = (meaning, None) if isinstance(meaning, str) else meaning
+    for form, about in options.items():
         words = form.split()
-        flags = [word for word in words if word.startswith("-")]
-        more = _taken(words[len(flags) or 1 :], kind, is_option=bool(flags))
-        if isinstance(meaning, Required):
+        count = sum(word.startswith("-") for word in words)
+        flags, shown = words[: count or 1], words[count or 1 :]
+        name, equals, default = flags[-1].partition("=")
+        flags[-1], _, kind = name.partition(":")
+        more = _taken(shown, kind, default if equals else None, is_option=count > 0)
+        if isinstance(about, Required):
             more["required"] = True
-        parser.add_argument(*(flags or words[:1]), help=about, **more)
+        parser.add_argument(*flags, help=about, **more)
 
 
-def _taken(shown: Sequence[str], kind: Kind | None, is_option: bool) -> dict[str, Any]:
+def _taken(shown: Sequence[str], kind: str, default: str | None, is_option: bool) -> dict[str, Any]:
     """What an argument takes, in the words of argparse."""
-    if not shown and kind is None and is_option:
+    if not shown and not kind and default is None and is_option:
         return {"action": "store_true"}
     names = tuple(word.strip("[]") for word in shown if word != "...")
     may_lack, is_open = "[" in "".join(shown), "..." in shown
@@ -77,17 +73,27 @@ def _taken(shown: Sequence[str], kind: Kind | None, is_option: bool) -> dict[str
         more["nargs"] = "?" if not is_open else "*" if may_lack else "+"
     elif len(names) > 1:
         more["nargs"] = len(names)
-    if kind is list:
+    if kind == "list":
         more |= {"action": "append", "default": []}
-    elif isinstance(kind, type):
-        more["type"] = kind
-    elif isinstance(kind, str | int | float):
-        more |= {"type": type(kind), "default": kind}
-    elif kind is not None and isinstance(kind[0], str):
-        more |= {"choices": kind, "default": kind[0] if is_option else None}
-    elif kind is not None:
-        more |= {"type": float, "default": kind}
+    elif kind:
+        more["type"] = {"int": int, "float": float}[kind]
+    elif default is not None and "|" in default:
+        choices = default.split("|")
+        more |= {"choices": choices, "default": choices[0]}
+    elif default is not None:
+        value = _value(default)
+        more |= {"type": type(value), "default": (value,) * len(names) if names[1:] else value}
     return more
+
+
+def _value(text: str) -> int | float | str:
+    """The number that a text is, or the text."""
+    for kind in (int, float):
+        try:
+            return kind(text)
+        except ValueError:
+            continue
+    return text
 
 
 def output(name: str = "OUT", force: str = "") -> Options:
@@ -105,7 +111,7 @@ def output(name: str = "OUT", force: str = "") -> Options:
     }
 
 
-EFFECTS: Options = {"--effects FILE.py": ("file with your own effects; may be repeated", list)}
+EFFECTS: Options = {"--effects:list FILE.py": "file with your own effects; may be repeated"}
 
 PDF: Options = {"--pdf": "also print the report to report.pdf (needs WeasyPrint or a browser)"}
 
@@ -124,12 +130,9 @@ RESULTS: Options = {
 def body(meaning: str) -> Options:
     """Options that state the temperature of the standard."""
     return {
-        "--body-degC T": (meaning, float),
-        "--body-u-K U": (
-            "standard uncertainty of the temperature of the standard, K (0.3 if the temperature is "
-            "stated; otherwise 2, about 20 °C)",
-            float,
-        ),
+        "--body-degC:float T": meaning,
+        "--body-u-K:float U": "standard uncertainty of the temperature of the standard, K (0.3 if "
+        "the temperature is stated; otherwise 2, about 20 °C)",
     }
 
 

@@ -17,7 +17,6 @@ if TYPE_CHECKING:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Arguments of the command."""
     add_options(
         parser,
         {
@@ -25,21 +24,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
             "--tables DIR": "write compensation tables of the controls to this folder",
             "--program IN": "part program to compensate (.H, .ngc)",
             "-o --output OUT": "compensated program",
-            "--tolerance UM": (
-                "largest distance between a path and the line segments that replace it, µm (1)",
-                float,
-            ),
+            "--tolerance:float UM": "largest distance between a path and the line segments that "
+            "replace it, µm (1)",
             **PROGRAM,
             "--loads LOADS.csv": "process forces by program line, with --program (--load applies "
             "to the other lines)",
-            "--control NAME": (
-                "write only the tables of this control: iso230, sinumerik, linuxcnc, heidenhain",
-                list,
-            ),
-            "--opposite NAME": (
-                "reverse the sign of the values in the tables of this control",
-                list,
-            ),
+            "--control:list NAME": "write only the tables of this control: iso230, sinumerik, "
+            "linuxcnc, heidenhain",
+            "--opposite:list NAME": "reverse the sign of the values in the tables of this control",
             **STATE,
             "--force": "replace results of an earlier run",
         },

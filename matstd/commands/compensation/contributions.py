@@ -11,7 +11,6 @@ from matstd.twin.errors import DesignError
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Arguments of the command."""
     add_options(
         parser,
         {

@@ -18,25 +18,19 @@ if TYPE_CHECKING:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Arguments of the command."""
     add_options(
         parser,
         {
             **MODEL,
-            "--endpoint URL": (
-                "address of the OPC UA server (opc.tcp://localhost:4840: reachable from this "
-                "computer only)",
-                "opc.tcp://localhost:4840",
-            ),
+            "--endpoint=opc.tcp://localhost:4840 URL": "address of the OPC UA server "
+            "(opc.tcp://localhost:4840: reachable from this computer only)",
             "--linuxcnc MACHINE.ini": "correct this LinuxCNC on this computer by external "
             "offsets, instead of OPC UA",
-            "--most UM": ("largest correction of an axis, µm (200)", 200.0),
-            "--rate UM_S": ("largest rate of change of a correction, µm/s (1000)", 1000.0),
-            "--patience S": (
-                "time without readings until a correction is marked invalid, s (0.5)",
-                0.5,
-            ),
-            "--hold S": ("time without readings until a correction returns to zero, s (5)", 5.0),
+            "--most=200.0 UM": "largest correction of an axis, µm (200)",
+            "--rate=1000.0 UM_S": "largest rate of change of a correction, µm/s (1000)",
+            "--patience=0.5 S": "time without readings until a correction is marked invalid, s "
+            "(0.5)",
+            "--hold=5.0 S": "time without readings until a correction returns to zero, s (5)",
             **STATE,
         },
     )

@@ -70,7 +70,6 @@ EXAMPLES = {
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Arguments of the command."""
     parser.add_argument("name", nargs="?", choices=EXAMPLES, help="copy this example")
     add_options(
         parser,

@@ -7,7 +7,6 @@ from matstd.options import add_options
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Arguments of the command."""
     add_options(
         parser,
         {

@@ -41,7 +41,6 @@ NEEDS_MACHINE = ("project", "run")  # kinds that name a machine file
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Arguments of the command."""
     parser.add_argument("kind", choices=TEMPLATES, help="kind of file")
     parser.add_argument(
         "--like",
@@ -54,11 +53,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         {
             "--machine MACHINE.toml": "for a project: propose blank, probe, faces, place and "
             "workspace that suit this machine",
-            "--table-mm SIZE ...": (
-                "with --machine: diameter of the table, or its two sides, mm (default: from the "
-                "travels)",
-                float,
-            ),
+            "--table-mm:float SIZE ...": "with --machine: diameter of the table, or its two "
+            "sides, mm (default: from the travels)",
             "-o --output FILE": "output file (default: standard output); for a project or run, a "
             "machine.toml is also written beside it if none exists",
             "--force": "overwrite an existing output",

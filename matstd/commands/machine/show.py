@@ -12,7 +12,6 @@ from matstd.twin.units import USUAL_TOOL_LENGTH
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Arguments of the command."""
     add_options(parser, {"machine MACHINE.toml": "machine file"})
     known: Options = {
         "--errors ERRORS.toml": "errors of the machine",
@@ -26,16 +25,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
             "order",
             "--standard STANDARD.toml": "standard that the probing programs touch; also shows the "
             "clearance of the probe",
-            "--tool-length MM": (
-                "length of the tool, from the spindle gauge point to the tip (160)",
-                USUAL_TOOL_LENGTH,
-            ),
+            f"--tool-length={USUAL_TOOL_LENGTH} MM": "length of the tool, from the spindle gauge "
+            "point to the tip (160)",
             **DATUM,
-            "--control NAME|FILE.toml": (
-                "control that probing programs are written for; needed for your own dialect "
-                "(itnc530)",
-                "itnc530",
-            ),
+            "--control=itnc530 NAME|FILE.toml": "control that probing programs are written for; "
+            "needed for your own dialect (itnc530)",
             **PROGRAM,
             "--loads LOADS.csv": "process forces by program line",
             **DRIVEN,

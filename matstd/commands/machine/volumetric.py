@@ -8,7 +8,6 @@ from matstd.twin.units import UM
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Arguments of the command."""
     add_options(
         parser,
         {

@@ -23,7 +23,6 @@ CELL_WIDTH = 40
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Arguments of the command."""
     add_options(
         parser,
         {

@@ -35,7 +35,6 @@ _SIGN = {
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Arguments of the command."""
     files = "csv, txt, xlsx, xls or ods; each of several lists of points is one set-up"
     add_options(parser, {"files FILE ...": files})
     _add_kinds(parser)
@@ -44,29 +43,19 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         parser,
         {
             "--machine MACHINE.toml": "machine file (default: a file is written from the table)",
-            "--u-um": ("standard uncertainty of one reading, µm", float),
-            "--u-urad": (
-                "standard uncertainty of one reading of a rotary axis, or of the measured "
-                "orientation of a target on an arm, µrad",
-                float,
-            ),
-            "--travel AXIS LOW HIGH": (
-                "travel of an axis in the machine file that is written, mm or degrees (default: "
-                "that of the data; of joints without limits in --dh, whole half turns)",
-                list,
-            ),
-            "--in-order SECONDS": (
-                "rows are in the order of measurement, SECONDS apart; allows the search for "
-                "drifts and slips",
-                float,
-            ),
+            "--u-um:float": "standard uncertainty of one reading, µm",
+            "--u-urad:float": "standard uncertainty of one reading of a rotary axis, or of the "
+            "measured orientation of a target on an arm, µrad",
+            "--travel:list AXIS LOW HIGH": "travel of an axis in the machine file that is "
+            "written, mm or degrees (default: that of the data; of joints without limits in --dh, "
+            "whole half turns)",
+            "--in-order:float SECONDS": "rows are in the order of measurement, SECONDS apart; "
+            "allows the search for drifts and slips",
             "--unit UNIT": "unit of deviations if the column header names none, such as µm",
             "--columns NAME,...": "column names of a table without header",
             "--sheet NAME": "sheet of a workbook (default: the first with data)",
-            "--table N": (
-                "number of the table in a file with several (default: the one with most readings)",
-                int,
-            ),
+            "--table:int N": "number of the table in a file with several (default: the one with "
+            "most readings)",
             **output("RUN.csv", "overwrite existing outputs"),
         },
     )
@@ -97,27 +86,19 @@ def _add_details(parser: argparse.ArgumentParser) -> None:
     add_options(
         parser.add_argument_group("with --positioning"),
         {
-            "--target COLUMN": (
-                "column of the target positions, if the header does not name it; with two "
-                "encoders, the one that closes the position loop",
-                "",
-            ),
-            "--actual COLUMN": ("column of the actual positions, by the reference instrument", ""),
+            "--target= COLUMN": "column of the target positions, if the header does not name it; "
+            "with two encoders, the one that closes the position loop",
+            "--actual= COLUMN": "column of the actual positions, by the reference instrument",
         },
     )
     add_options(
         parser.add_argument_group("with --circle"),
         {
-            "--radius": ("nominal radius, mm", float),
-            "--feed": ("feed, mm/min; times and speeds follow from it", float),
-            "--bar-force N": (
-                "force of a loaded ball bar on the tool, N, outwards (negative: inwards)",
-                float,
-            ),
-            "--centre X Y Z": (
-                "axis readings at the centre of the circle, mm (0 0 0)",
-                (0.0, 0.0, 0.0),
-            ),
+            "--radius:float": "nominal radius, mm",
+            "--feed:float": "feed, mm/min; times and speeds follow from it",
+            "--bar-force:float N": "force of a loaded ball bar on the tool, N, outwards "
+            "(negative: inwards)",
+            "--centre=0.0 X Y Z": "axis readings at the centre of the circle, mm (0 0 0)",
         },
     )
     add_options(
@@ -126,16 +107,10 @@ def _add_details(parser: argparse.ArgumentParser) -> None:
             "--dh DH.csv": "Denavit-Hartenberg parameters a, alpha, d, theta, one row per joint, "
             "instead of --machine",
             "--modified": "the parameters of --dh follow the modified convention (Craig)",
-            "--coupled J3+J2": (
-                "coupled joints: the reading of the first is relative to the link before the "
-                "second (Fanuc: J3+J2)",
-                list,
-            ),
-            "--reflector X Y Z": (
-                "position of the reflector, mm, in the tool frame, or with --dh in the flange "
-                "frame (default: estimated from the data)",
-                float,
-            ),
+            "--coupled:list J3+J2": "coupled joints: the reading of the first is relative to the "
+            "link before the second (Fanuc: J3+J2)",
+            "--reflector:float X Y Z": "position of the reflector, mm, in the tool frame, or with "
+            "--dh in the flange frame (default: estimated from the data)",
         },
     )
 

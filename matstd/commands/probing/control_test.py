@@ -16,14 +16,13 @@ if TYPE_CHECKING:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Arguments of the command."""
     add_options(parser, {"design OUT": "output folder of `matstd design`, for any control"})
     add_planted(parser)
     add_options(
         parser,
         {
-            "--touches N": ("run only N touches, spread evenly over the programs", int),
-            "--user USER": ("user that runs LinuxCNC if you are root (LinuxCNC refuses root)", ""),
+            "--touches:int N": "run only N touches, spread evenly over the programs",
+            "--user= USER": "user that runs LinuxCNC if you are root (LinuxCNC refuses root)",
             **output(),
         },
     )

@@ -11,7 +11,6 @@ from matstd.twin.units import DEG, UM
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Arguments of the command."""
     add_options(
         parser,
         {
@@ -19,17 +18,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
             "order",
             "--standard STANDARD.toml": Required("standard as calibrated"),
             "--machine MACHINE.toml": Required("machine file"),
-            "--u-um": ("standard uncertainty of one touch, µm (1.0)", 1.0),
-            "--z": (
-                "meaning of Z in the result of cycle 4: spindle gauge point, or pole of the "
-                "probe ball; a calibrated sphere shows which (gauge)",
-                ("gauge", "tip"),
-            ),
-            "--probe-limit-um": (
-                "largest change of the ball's position or of the probe's effective radius "
-                "between two logs of OUT/setup/..._CAL, µm; beyond it the command stops (10)",
-                10.0,
-            ),
+            "--u-um=1.0": "standard uncertainty of one touch, µm (1.0)",
+            "--z=gauge|tip": "meaning of Z in the result of cycle 4: spindle gauge point, or pole "
+            "of the probe ball; a calibrated sphere shows which (gauge)",
+            "--probe-limit-um=10.0": "largest change of the ball's position or of the probe's "
+            "effective radius between two logs of OUT/setup/..._CAL, µm; beyond it the command "
+            "stops (10)",
             "--programs DIR": "folder of the programs that the logs are checked against: sides, "
             "poses, tool and preset (default: `programs` beside STANDARD.toml, if it exists)",
             "--sensors SENSORS.csv": "temperatures over the clock of the control: columns clock "
@@ -49,21 +43,14 @@ def _add_scan(parser: argparse.ArgumentParser) -> None:
         parser.add_argument_group("of a scan, a table with x, y, z in place of a log"),
         {
             "--scan FACE": "name of the scanned freeform face",
-            "--radius-mm": ("radius of the ball", float),
-            "--length-mm": ("from the gauge point to the centre of the ball", float),
-            "--frame": (
-                "what x, y, z are: readings of the axes, or the centre of the ball in the frame of "
-                "the standard (machine)",
-                ("machine", "standard"),
-            ),
-            "--origin-mm X Y Z": (
-                "origin of the standard in the table frame, within 5 mm (0 0 0)",
-                (0.0, 0.0, 0.0),
-            ),
-            "--rotation-deg A B C": (
-                "its rotations about the fixed x, then y, then z of the table frame (0 0 0)",
-                (0.0, 0.0, 0.0),
-            ),
+            "--radius-mm:float": "radius of the ball",
+            "--length-mm:float": "from the gauge point to the centre of the ball",
+            "--frame=machine|standard": "what x, y, z are: readings of the axes, or the centre of "
+            "the ball in the frame of the standard (machine)",
+            "--origin-mm=0.0 X Y Z": "origin of the standard in the table frame, within 5 mm (0 0 "
+            "0)",
+            "--rotation-deg=0.0 A B C": "its rotations about the fixed x, then y, then z of the "
+            "table frame (0 0 0)",
         },
     )
 

@@ -10,7 +10,6 @@ from matstd.twin.units import DEG
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Arguments of the command."""
     add_options(
         parser,
         {
@@ -20,16 +19,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
             "--design OUT": Required("output folder of `matstd design` or `matstd replan`"),
             "--control NAME|FILE.toml": "control that the programs are written for (default: that "
             "of the programs in OUT)",
-            "--within-mm": (
-                "largest expected offset of the standard from its planned position, mm "
-                "(default: that of the search in OUT/setup)",
-                float,
-            ),
-            "--within-deg": (
-                "largest expected rotation of the standard from its planned orientation, degrees "
-                "(default: as --within-mm)",
-                float,
-            ),
+            "--within-mm:float": "largest expected offset of the standard from its planned "
+            "position, mm (default: that of the search in OUT/setup)",
+            "--within-deg:float": "largest expected rotation of the standard from its planned "
+            "orientation, degrees (default: as --within-mm)",
             **PDF,
             **output(),
         },

@@ -18,7 +18,6 @@ if TYPE_CHECKING:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Arguments of the command."""
     temperature = (
         "temperature of the standard, °C; the run file states it (default: 20, not stated)"
     )
@@ -40,12 +39,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
             "--sensors SENSORS.csv": "temperatures and spindle speed over time, as for "
             "`evaluate`: columns clock (2031-05-06T07:08:09), T_<sensor>_degC, spindle_rpm; the "
             "run begins at the first row",
-            "--probe-length": ("length of the probe, mm; must equal the program's", float),
-            "--probe-radius": ("radius of the probe ball, mm; must equal the program's", float),
-            "--control NAME|FILE.toml": (
-                "control that the programs are written for; needed for your own dialect (itnc530)",
-                "itnc530",
-            ),
+            "--probe-length:float": "length of the probe, mm; must equal the program's",
+            "--probe-radius:float": "radius of the probe ball, mm; must equal the program's",
+            "--control=itnc530 NAME|FILE.toml": "control that the programs are written for; "
+            "needed for your own dialect (itnc530)",
             "--logs FOLDER": "also write the logs of the control to this folder",
             **output("RUN.csv"),
         },
@@ -128,7 +125,7 @@ def add_planted(parser: argparse.ArgumentParser) -> None:
     add_options(
         parser,
         {
-            "--noise-um": ("standard deviation of one touch, µm (1.0)", 1.0),
+            "--noise-um=1.0": "standard deviation of one touch, µm (1.0)",
             "--add EFFECT=SIZE ...": "simulate these effects, each size with its unit: "
             "'thermal-lag(EZZ)=25um,tau=18min', 'backlash(X)=3um', 'drift=X=2um/h'",
             **EFFECTS,
@@ -136,7 +133,7 @@ def add_planted(parser: argparse.ArgumentParser) -> None:
             "own frame: X=0.3mm,Y=-0.1mm,C=0.05deg",
             "--probe-error NAME=SIZE": "error of the probe, true minus calibrated value: "
             "radius=1um,length=20um",
-            "--seed": ("seed of noise and random errors (0)", 0),
+            "--seed=0": "seed of noise and random errors (0)",
         },
     )
 

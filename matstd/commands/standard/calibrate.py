@@ -17,7 +17,6 @@ if TYPE_CHECKING:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Arguments of the command."""
     add_options(parser, {"standard STANDARD.toml": "standard as designed"})
     what: Options = {
         "--points CMM.csv ...": "points measured by the CMM: columns feature, x, y, z (mm unless "
@@ -29,32 +28,19 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_options(
         parser,
         {
-            "--orientation DEG": (
-                "with --program: orientation of the standard on the CMM about z, degrees (0); four "
-                "of them (0, 90, 180, 270) cancel squareness and differences of scales",
-                0.0,
-            ),
-            "--u-um": ("standard uncertainty of one point, µm (0.3)", 0.3),
-            "--u-feature-um": (
-                "standard uncertainty of the position of a feature that its points share "
-                "(squareness and stylus of the CMM), from the certificate, µm (0.3)",
-                0.3,
-            ),
-            "--body-u-K U": (
-                "standard uncertainty of the temperature of the standard during the "
-                "measurement, about 20 °C, K (0.5); it enters the assessment of the scale",
-                0.5,
-            ),
-            "--scale-u-ppm U": (
-                "standard uncertainty of the scales of the CMM, ppm (1): of 1.2 + L/350 µm "
-                "(ISO 10360-2) it is 1.6; all features share it, with that of the temperature",
-                1.0,
-            ),
-            "--waviness-um W": (
-                "root mean square of waves that is assumed along a direction of a face without a "
-                "dense line of points, µm (0.5)",
-                0.5,
-            ),
+            "--orientation=0.0 DEG": "with --program: orientation of the standard on the CMM "
+            "about z, degrees (0); four of them (0, 90, 180, 270) cancel squareness and "
+            "differences of scales",
+            "--u-um=0.3": "standard uncertainty of one point, µm (0.3)",
+            "--u-feature-um=0.3": "standard uncertainty of the position of a feature that its "
+            "points share (squareness and stylus of the CMM), from the certificate, µm (0.3)",
+            "--body-u-K=0.5 U": "standard uncertainty of the temperature of the standard during "
+            "the measurement, about 20 °C, K (0.5); it enters the assessment of the scale",
+            "--scale-u-ppm=1.0 U": "standard uncertainty of the scales of the CMM, ppm (1): of "
+            "1.2 + L/350 µm (ISO 10360-2) it is 1.6; all features share it, with that of the "
+            "temperature",
+            "--waviness-um=0.5 W": "root mean square of waves that is assumed along a direction "
+            "of a face without a dense line of points, µm (0.5)",
             "--accept": "write the standard even if it does not conform to its drawing; the file "
             "states this",
             "--cad FOLDER": "also write STEP, STL, 3MF and glTF of the standard as measured",

@@ -33,7 +33,6 @@ LINEAR_PLAN = {**PLAN, "artefacts of balls": 5.4, "faces": 3.4}
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Arguments of the command."""
     add_options(
         parser,
         {

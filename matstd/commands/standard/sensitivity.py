@@ -14,7 +14,6 @@ _STUDY_ONLY = ("draws", "digits", "tolerance_um", "scheduler", "pdf")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Arguments of the command."""
     parser.description = (
         "With a machine and poses: write the sensitivity to every error parameter at "
         "every pose to a CSV file. With a project: write maps, trajectories and a "
@@ -26,12 +25,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
             "source MACHINE.toml|PROJECT.toml": "machine file, or project file",
             "poses [POSES.csv]": "axis readings, one row per pose (with a machine file)",
             "-o --output OUT": Required("output file"),
-            "--draws N": ("largest number of random machines", int),
-            "--digits D": ("draw until D significant digits are stable (JCGM 101, 7.9.4)", int),
-            "--tolerance-um T": (
-                "also report the share of machines whose deviation exceeds T µm",
-                float,
-            ),
+            "--draws:int N": "largest number of random machines",
+            "--digits:int D": "draw until D significant digits are stable (JCGM 101, 7.9.4)",
+            "--tolerance-um:float T": "also report the share of machines whose deviation exceeds "
+            "T µm",
             **SCHEDULER,
             **PDF,
             "--force": "overwrite an existing output",

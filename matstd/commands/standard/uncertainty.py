@@ -9,7 +9,6 @@ from matstd.options import EFFECTS, Required, add_options, output
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Arguments of the command."""
     add_options(
         parser,
         {
