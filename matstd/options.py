@@ -196,11 +196,7 @@ def starting_model(args: argparse.Namespace) -> str:
 
 
 def named_numbers(option: str, words: Sequence[str], expected: str) -> dict[str, float]:
-    """Numbers by name of words such as `X=10`.
-
-    Raises:
-        DesignError: No name and number, or a name that is given twice.
-    """
+    """Numbers by name of words such as `X=10`; raises DesignError for no number, or one twice."""
     out: dict[str, float] = {}
     for word in words:
         name, _, number = (part.strip() for part in word.rpartition("="))

@@ -27,11 +27,7 @@ class _Asked:
 
 
 def raise_if_asked() -> None:
-    """End the work here if it shall end.
-
-    Raises:
-        KeyboardInterrupt: The command was asked to stop.
-    """
+    """Raise KeyboardInterrupt here if the command was asked to stop."""
     if _Asked.to_stop:
         raise KeyboardInterrupt
 

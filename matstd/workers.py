@@ -20,11 +20,7 @@ SCHEDULER: Options = {
 
 @contextmanager
 def connected(address: str | None) -> Iterator[Workers]:
-    """The workers at an address; None, for this process, without one.
-
-    Raises:
-        DesignError: No scheduler answers there.
-    """
+    """The workers at an address, None without one; raises DesignError where none answers."""
     if address is None:
         yield None
         return

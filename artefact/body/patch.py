@@ -57,11 +57,7 @@ class Surface(Protocol):
 def read_only(
     values: ArrayLike, shape: tuple[int, ...] | None = None, what: str = "array"
 ) -> Array:
-    """A read-only float64 copy of the stated shape.
-
-    Raises:
-        ShapeMismatch: Another shape, or a value that is not finite.
-    """
+    """A read-only float64 copy; raises ShapeMismatch for another shape or a value not finite."""
     copy = np.array(values, dtype=np.float64)
     if shape is not None and copy.shape != shape:
         raise ShapeMismatch(f"{what}: shape {copy.shape}, expected {shape}")

@@ -41,11 +41,7 @@ class Faults(list[BadFile]):
             self.extend(faults_of(error))
 
     def refuse(self) -> None:
-        """Raise what was found.
-
-        Raises:
-            BadFile: All faults, in one line.
-        """
+        """Raise BadFile with all faults in one line, if there are any."""
         if self:
             raise BadFile.several(self)
 

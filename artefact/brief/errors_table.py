@@ -72,11 +72,7 @@ class ErrorsTable(Table):
 
 
 def expected_errors(table: ErrorsTable, chain: Chain, path: Path) -> Population:
-    """Population of machines that a table describes.
-
-    Raises:
-        BadFile: File, key, what stood there, what was expected.
-    """
+    """Population of machines that a table describes; raises BadFile with file and key."""
     ranges = _ranges(table, chain, path)
     if all(ranges.of(chain, symbol)[1] == 0.0 for symbol in chain.symbols):
         raise BadFile(path, "errors", "amplitudes of zero for every error", "one above zero")

@@ -124,11 +124,7 @@ class BodyTable(Table):
     """set-up in which it is present; empty for all"""
 
     def body(self, folder: Path) -> Body:
-        """In base units; a mesh is read from a folder.
-
-        Raises:
-            BadFile: No mesh, or an empty one.
-        """
+        """In base units, a mesh read from a folder; raises BadFile for none, or an empty one."""
         a, b = self.sides_mm or (self.diameter_mm or 0.0,) * 2
         return Body(
             name=self.name,
@@ -330,11 +326,7 @@ def checked_probes(workshop: WorkshopTable, path: Path) -> tuple[FurtherProbeTab
 
 
 def check_workshop(workshop: WorkshopTable, setups: Collection[str], path: Path) -> None:
-    """Reject a table or body without exactly one shape, or in an unknown set-up.
-
-    Raises:
-        BadFile: The key and what was expected.
-    """
+    """Raise BadFile for a table or body without exactly one shape, or in an unknown set-up."""
     table = workshop.table
     if table is not None and (table.diameter_mm is None) == (table.sides_mm is None):
         raise BadFile(path, "workshop.table", "not one outline", "diameter_mm or sides_mm")

@@ -65,11 +65,7 @@ def meetings(brief: Brief, setup: Setup) -> Iterator[Meeting]:
 
 
 def seen_from_face(brief: Brief, setup: Setup, body: Body, q: Array) -> Array:
-    """Poses T_face_still (N, 4, 4) that take a body where the turned table sees it.
-
-    Args:
-        q: Readings, shape (N, A), mm and rad.
-    """
+    """Poses (N, 4, 4) that take a body to where the table, turned at q (N, A), sees it."""
     T_table_face = table_face(setup.T_table_artefact)
     T_still_table = still_frames([body.on], brief.chain, q)[body.on]
     return inverse(T_table_face) @ inverse(T_still_table) @ T_table_face

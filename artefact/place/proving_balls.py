@@ -70,11 +70,7 @@ def proving_on_balls(
 
 
 def _standing(balls: list[DatumSphere], blank: Blank, options: PlacementOptions) -> Standard:
-    """A standard of balls, with its screws.
-
-    Raises:
-        NotBuildable: No room for the screws, or a limit that is violated.
-    """
+    """A standard of balls with its screws; raises NotBuildable without room, or beyond a limit."""
     made = assembled(blank, options.name, options.serial, [], balls, holes_on(blank, balls))
     check(made, blank.limits)
     return made

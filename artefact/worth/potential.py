@@ -67,11 +67,7 @@ class Potential:
         return len(self.names)
 
     def rows(self, touches: Touches, reduced: Array) -> Array:
-        """Columns of the potential terms at some touches, (N, Q).
-
-        Args:
-            reduced: Rows of the model in the directions that matter, (N, R).
-        """
+        """Columns of the potential terms (N, Q) at touches with these rows of the model (N, R)."""
         signatures = columns(list(self.effects), touches) @ self.mix
         return signatures - reduced @ self.imitation
 

@@ -51,11 +51,7 @@ class Instance(NamedTuple):
 
 
 def read_entities(path: Path) -> dict[int, str]:
-    """Entities of a STEP file by their numbers, without breaks.
-
-    Raises:
-        BadFile: No data section.
-    """
+    """Entities of a STEP file by number, without breaks; raises BadFile without a data section."""
     text = path.read_text(encoding="utf-8")
     entities = {int(key): _in_one_line(value) for key, value in _ENTITY.findall(text)}
     if not entities:

@@ -30,11 +30,7 @@ class Frame:
 
     @cached_property
     def linear(self) -> list[int]:
-        """Columns of the linear axes in the order X, Y, Z.
-
-        Raises:
-            NotReachable: The machine has others, or a different number of them.
-        """
+        """Columns of X, Y and Z; raises NotReachable where the linear axes are others."""
         if sorted(self.chain.linear_axes) != ["X", "Y", "Z"]:
             shown = ", ".join(self.chain.linear_axes)
             raise NotReachable(f"machine {self.chain.name} moves {shown}; programs need X, Y, Z")

@@ -29,11 +29,7 @@ class Header:
 
     @classmethod
     def of(cls, text: str, path: str | Path) -> "Header":
-        """Head of a table that was read.
-
-        Raises:
-            BadFile: It is none of ours, or its head was lost.
-        """
+        """Head of a table that was read; raises BadFile where it is none of ours, or was lost."""
         matches = (_LINE.match(line) for line in text.splitlines())
         found = {match[1]: match[2] for match in matches if match is not None}
         values = {key: found.get(f"matstd {key}") for key in cls.__slots__}

@@ -238,11 +238,7 @@ def _with_sag(placement: Placement, down: str) -> tuple[Placement, Stiffness | N
 
 
 def _check_first_mode(brief: Brief, stiffness: Stiffness | None) -> None:
-    """Refuse a standard that vibrates below the limit of the project.
-
-    Raises:
-        BadFile: The limit, and the first mode of the design.
-    """
+    """Raise BadFile for a first mode below the limit of the project."""
     wanted = brief.first_mode
     if not wanted or (stiffness is not None and stiffness.first_mode >= wanted):
         return

@@ -33,11 +33,7 @@ _NOTHING = (
 
 @contextmanager
 def refusals(brief: Brief, folder: Path, out: str | Path) -> Iterator[None]:
-    """Make whatever stops a design one line that helps.
-
-    Args:
-        folder: In which it is; the picture of what is reached lies there.
-    """
+    """Make whatever stops a design one line that helps; pictures of it lie in `folder`."""
     try:
         yield
     except NotBuildable as error:

@@ -363,11 +363,7 @@ class Writer:
 
 
 def visit_title(rotary: Sequence[str], count: int, total: int, visit: Visit) -> str:
-    """Which visit it is, where, and from which side its rotary readings are reached.
-
-    Args:
-        count: Number of the visit in its program, from 1.
-    """
+    """Which visit (from 1) of a program it is, where, and from which side it is reached."""
     words = [
         f"{a}{v / DEG:+.2f} FROM {'BELOW' if s > 0 else 'ABOVE'}"
         for a, v, s in sorted(zip(rotary, visit.rotary, visit.side, strict=True))

@@ -76,11 +76,7 @@ class _Side:
 
 
 def chain_bodies(chain: Chain, length: float) -> tuple[list[Drawn], list[Letter]]:
-    """Bodies and letters of a machine.
-
-    Args:
-        length: Of the tool, from the gauge point to its tip, mm.
-    """
+    """Bodies and letters of a machine; `length` of the tool from the gauge point to its tip, mm."""
     up = np.array([0.0, 0.0, 1.0])
     colours = {name: _tinted(series(k)) for k, name in enumerate(chain.axes)}
     inner = [k for k in chain.links if k.carries_workpiece and k.kind != "fixed"]

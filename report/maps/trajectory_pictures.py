@@ -24,11 +24,7 @@ _SHOWN = 6  # errors with a line of their own
 
 
 def axis_effect_picture(effect: AlongPath) -> tuple[Figure, str]:
-    """Effect of some errors along a trajectory, all together and each alone.
-
-    Returns:
-        The figure and its caption.
-    """
+    """Effect of some errors along a trajectory, together and each alone, with its caption."""
     path = effect.trajectory
     drawn, axes, beside = _sheet(path)
     axes.plot(path.along, effect.size / UM, color=INK, lw=2.4, label="together")
@@ -51,11 +47,7 @@ def axis_effect_picture(effect: AlongPath) -> tuple[Figure, str]:
 def statistics_picture(
     path: Trajectory, found: Volumetric, closed_p95: Array
 ) -> tuple[Figure, str]:
-    """Volumetric error of random machines along a trajectory.
-
-    Returns:
-        The figure and its caption.
-    """
+    """Volumetric error of random machines along a trajectory, with its caption."""
     drawn, axes, beside = _sheet(path)
     axes.fill_between(
         path.along, found.quantile[0] / UM, found.quantile[-1] / UM, color=series(0), alpha=0.18,

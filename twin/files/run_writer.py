@@ -64,11 +64,7 @@ def run_text(run: Run, machine: str) -> str:
 
 
 def _body_line(touches: Touches) -> str:
-    """Line of the head with the size of the standard, if stated.
-
-    Raises:
-        ShapeMismatch: Several standards.
-    """
+    """The size of the standard in the head, if stated; raises ShapeMismatch for several."""
     bodies = {s.body for s in touches.setups}
     body = bodies.pop()
     if bodies:

@@ -174,11 +174,7 @@ class Chain(Displayed):
         return self.axes.index(name)
 
     def link_index(self, name: str) -> int:
-        """Place of a link, `w` and `t` included, in arrays over links (N, L, 6).
-
-        Raises:
-            UnknownAxis: The machine has no such link.
-        """
+        """Place of a link, also `w` and `t`, in arrays over links (N, L, 6); raises UnknownAxis."""
         for i, link in enumerate(self.links):
             if link.name == name:
                 return i
