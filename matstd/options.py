@@ -29,8 +29,7 @@ SHEET_FILES = (
 """Of it and of the programs, what not every run leaves."""
 
 
-Options = dict[str, str]
-"""Arguments with their meanings for the help, as `add_options` explains."""
+Options = dict[str, str]  # arguments with their meanings for the help, as `add_options` explains
 
 
 class Required(str):

@@ -14,9 +14,7 @@ from matstd.twin.errors import ShapeMismatch
 from matstd.twin.frames import Array, Mask, apply, inverse, turn, unit
 from matstd.twin.sampling import grid_points
 
-OVERHANG = 6.0
-"""Extension of the spline beyond the trimmed rectangle on every side, mm."""
-
+OVERHANG = 6.0  # extension of the spline beyond the trimmed rectangle on every side, mm
 LEAST_OVERHANG = 1.0  # smallest extension of a patch that is read from a file, mm
 _GRID_PITCH = 2.0  # of the start grid, mm; finer than half the smallest concave radius allowed
 _NUMBERS_A_BLOCK = 100_000  # numbers looked at together: in the cache, three times as fast

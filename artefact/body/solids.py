@@ -12,9 +12,7 @@ from matstd.artefact.body.datum import outline_distance
 from matstd.artefact.body.freeform import FreeformPatch
 from matstd.twin.frames import Array, apply
 
-BLEND = 3.0
-"""Fillet radius at the foot of a pillar or post, mm."""
-
+BLEND = 3.0  # fillet radius at the foot of a pillar or post, mm
 _MAX_STEPS = 60  # bound: where a ball grazes a body, each Newton step only halves the gap
 _SECANT = 1e-5  # mm
 _CONTACT_GAP = 1e-9  # mm: distance at which a ball counts as touching

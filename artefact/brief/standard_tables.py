@@ -82,15 +82,12 @@ BASE_THICKNESS = 30.0  # thickness of the plate of every standard, mm
 CORNER_RADIUS = 25.0  # corner radius of that plate, mm
 
 
-FEWEST_PATCHES = 3
-"""Smallest number of patches of a standard."""
+FEWEST_PATCHES = 3  # smallest number of patches of a standard
 
 FINISHING_RADIUS = 3.0
 """Radius of the finishing ball-end mill, mm; smaller concave radii cannot be made."""
 
-LEAST_SIDE = 160.0
-"""Smallest side of a base, mm."""
-
+LEAST_SIDE = 160.0  # smallest side of a base, mm
 LEAST_HEIGHT = 120.0  # smallest height of a standard, mm
 
 _HIGHEST_SPHERE = 130.0 / 220.0

@@ -17,10 +17,7 @@ import numpy as np
 from matstd.twin.frames import Array, Mask
 
 WIDTH_OF_LINE = 0.4  # between the outermost points of one line, across it, mm
-
-MAX_SPACING = 2.0
-"""Largest distance between neighbours of a line, mm: waves of 4 mm are seen."""
-
+MAX_SPACING = 2.0  # largest distance between neighbours of a line, mm: waves of 4 mm are seen
 MIN_LINE_SHARE = 0.6  # smallest length of a line, as a share of the face
 
 MAX_SHARE_OF_LINES = 0.6

@@ -29,15 +29,9 @@ from matstd.twin.frames import Array, turn
 from matstd.twin.model import Effect, Model, columns
 from matstd.twin.units import UM
 
-MODEL_ERROR = 2.0 * UM
-"""Error of a wrong model, rms, mm."""
-
-FALSE_ALARM = 0.05
-"""Probability of rejecting a correct model."""
-
-DETECTION_POWER = 0.95
-"""Power from which an effect counts as detected."""
-
+MODEL_ERROR = 2.0 * UM  # error of a wrong model, rms, mm
+FALSE_ALARM = 0.05  # probability of rejecting a correct model
+DETECTION_POWER = 0.95  # power from which an effect counts as detected
 _MIXES = 8  # random mixes of the parameters of an effect, averaged
 _MIN_TIP_SHARE = 1e-9  # share of an effect at the tool point below which a task does not see it
 

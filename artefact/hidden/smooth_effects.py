@@ -30,9 +30,7 @@ FIELD_WIDTHS, BUMP_WIDTHS = (40.0, 25.0), (40.0, 20.0)
 """Full widths at half of the height of the effects that are asked for, mm: what a carriage or a
 nut of a ball screw averages over."""
 
-SIZE = 2.0 * UM
-"""Root mean square of an effect over the volume of the standard, mm."""
-
+SIZE = 2.0 * UM  # root mean square of an effect over the volume of the standard, mm
 FALSE_FINDING = 0.05  # probability of finding one where there is none
 
 FORM_LENGTH = 6.0

@@ -28,8 +28,7 @@ from matstd.twin.frames import Array, Mask, pose
 from matstd.twin.sampling import grid_points
 from matstd.twin.units import UM
 
-WALL_GAP = 12.0
-"""Smallest gap between two bodies, mm: a cutter of 10 mm passes with its run-out."""
+WALL_GAP = 12.0  # smallest gap between two bodies, mm: a cutter of 10 mm passes with its run-out
 
 POST_STIFFNESS = 18.0 / UM
 """Smallest lateral stiffness of a post, N/mm: with plate and pads 10 N/um remain."""

@@ -14,9 +14,7 @@ from matstd.artefact.reach.touchable import TRAVEL_ROUNDING, ProbeReach
 from matstd.twin.frames import Array, IntArray, Mask
 from matstd.twin.units import DEG
 
-ANGLE = "angle"
-"""Name of the limit that is no travel: between a surface's normal and the tool axis."""
-
+ANGLE = "angle"  # name of the limit that is no travel: between a surface's normal and the tool axis
 PLACES = 240  # tried on a blank
 _LOWEST, _HIGHEST = 20.0, 0.7  # of a touch: mm above the base, and share of the blank's height
 _TILT = 90.0 * DEG  # of a touch from the standard's z: balls are touched down to their equators

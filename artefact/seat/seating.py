@@ -15,8 +15,7 @@ from matstd.twin.frames import Array, apply, fixed_xyz_angles, inverse
 from matstd.twin.record import Setup
 from matstd.twin.units import DEG
 
-CONTACT_DEPTH = 0.1
-"""Depth up to which bodies count as touching, mm: a clamp lies on what it holds."""
+CONTACT_DEPTH = 0.1  # depth up to which bodies count as touching, mm: a clamp lies on what it holds
 
 ONE_SETUP = 1.0
 """Distance up to which two set-ups are one, mm, if they are turned by less than a degree."""

@@ -13,8 +13,7 @@ from matstd.twin.machine import Chain, tool_and_directions
 from matstd.twin.record import Labels, Setup
 from matstd.twin.units import DEG
 
-OVERSHOOT = 5.0 * DEG
-"""How far before a rotary position the last motion towards it begins, rad."""
+OVERSHOOT = 5.0 * DEG  # how far before a rotary position the last motion towards it begins, rad
 
 _TURN_SAMPLES = 25
 """Samples of every axis that turns in a move: all turn, in no order that is known. Half a turn is

@@ -8,14 +8,9 @@ import numpy as np
 
 from matstd.twin.frames import Array
 
-CUTTER = 0.5
-"""Radius of the ball-ended cutter, mm."""
-
-DEPTH = 0.35
-"""Of a dot, mm."""
-
-DOT = float(np.sqrt(DEPTH * (2.0 * CUTTER - DEPTH)))
-"""Radius of a dot where it comes out, mm."""
+CUTTER = 0.5  # radius of the ball-ended cutter, mm
+DEPTH = 0.35  # of a dot, mm
+DOT = float(np.sqrt(DEPTH * (2.0 * CUTTER - DEPTH)))  # radius of a dot where it comes out, mm
 
 SMALL, LARGE = 5, 7  # rows of dots of a letter
 _PITCH = 1.15  # mm between dots

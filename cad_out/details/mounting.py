@@ -14,9 +14,7 @@ BALL = Material(name="100Cr6 (1.3505), hardened, ISO 3290-1 G5", density=7.83e-6
 SCREW = Material(name="steel, property class 8.8", density=7.85e-6, expansion=11.5e-6)
 """Of a bought screw."""
 
-RELIEF = 1.0
-"""How far the underside stands back from the pads, mm."""
-
+RELIEF = 1.0  # how far the underside stands back from the pads, mm
 RELIEF_RADIUS = 3.0  # of the inner edge between a pad and the relief, mm
 _PAD_RIM = 4.0  # mm that a pad is wider than the counterbore above it
 _BESIDE_PAD = 1.5  # mm of relief between a pad's flank and the outline, at least

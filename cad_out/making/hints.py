@@ -15,9 +15,7 @@ from matstd.cad_out.making.cutting import RADIUS, TILTS, is_free
 from matstd.twin.frames import Array
 from matstd.twin.units import UM
 
-ROUGHNESS = (0.2 * UM, 0.4 * UM, 0.8 * UM)
-"""Ra for which step-overs are listed, mm."""
-
+ROUGHNESS = (0.2 * UM, 0.4 * UM, 0.8 * UM)  # Ra for which step-overs are listed, mm
 _RA = 4.0 / (9.0 * np.sqrt(3.0))  # of the height of a parabolic cusp
 _AZIMUTHS = 8
 _PITCH = 10.0  # mm between the places that are tested

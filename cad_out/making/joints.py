@@ -16,9 +16,7 @@ from matstd.cad_out.details import RELIEF, Details
 from matstd.twin.errors import NotBuildable
 from matstd.twin.frames import Array
 
-PAD_HEIGHT = 0.5
-"""Height of the pads of a block, mm."""
-
+PAD_HEIGHT = 0.5  # height of the pads of a block, mm
 _SIZES = (  # thread, core, through hole, head (ISO 261, 273, 4762), mm
     (12.0, 10.2, 13.5, 18.0),
     (10.0, 8.5, 11.0, 16.0),

@@ -15,8 +15,7 @@ from matstd.twin.errors import NotBuildable
 from matstd.twin.files.whole import write_json
 from matstd.twin.units import DEG, UM
 
-FIRST_MODE, SAG = 500.0, 0.1 * UM
-"""Least first mode, Hz; most sag that needs no correction, mm."""
+FIRST_MODE, SAG = 500.0, 0.1 * UM  # least first mode, Hz; most sag that needs no correction, mm
 
 
 @dataclass(frozen=True, eq=False)

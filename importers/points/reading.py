@@ -24,8 +24,7 @@ from matstd.importers.sheets import MM, Sheet, signs
 from matstd.twin.errors import BadFile
 from matstd.twin.frames import Array
 
-Meaning = Literal["part", "standard"]
-"""What a list is of: see the module."""
+Meaning = Literal["part", "standard"]  # what a list is of: see the module
 
 _NOMINAL = re.compile(r"nom|soll|target|calib|ref|theor|théor|cad", re.IGNORECASE)
 _MEASURED = re.compile(r"meas|act|ist\b|\bist|gemessen|mesur|réel|cmm|found", re.IGNORECASE)

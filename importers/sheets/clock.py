@@ -12,8 +12,7 @@ from matstd.twin.errors import BadFile
 from matstd.twin.frames import Array
 from matstd.twin.units import DAY, HOUR, MINUTE
 
-TIME = re.compile(r"time|zeit|clock|heure|\btemps", re.IGNORECASE)
-"""Names of columns of times."""
+TIME = re.compile(r"time|zeit|clock|heure|\btemps", re.IGNORECASE)  # names of columns of times
 
 _CLOCK = re.compile(
     r"(?:(?P<date>\d{1,4}[-./]\d{1,2}[-./]\d{1,4})[T ,]+)?"

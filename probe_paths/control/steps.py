@@ -9,8 +9,7 @@ from matstd.probe_paths.language import MaskLine
 from matstd.probe_paths.plan import Heading, Sensor
 from matstd.twin.frames import Array
 
-STATUS = 3
-"""Part of a cycle's result that states whether there was a contact; negative: none."""
+STATUS = 3  # part of a cycle's result that states whether there was a contact; negative: none
 
 
 class Result(NamedTuple):

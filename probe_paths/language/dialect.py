@@ -35,9 +35,7 @@ class Q(IntEnum):
 TOOL_LENGTH = 114
 """Parameter in which the control keeps the length of the called tool, as in the tool table."""
 
-FREE = range(1600, 2000)
-"""Parameters that a program may write."""
-
+FREE = range(1600, 2000)  # parameters that a program may write
 _ENDS_OF_VISITS = range(111, 255)  # up to the last label that the oldest software has
 
 

@@ -22,8 +22,7 @@ class SharedMask(StrEnum):
     NO_CONTACT = "MSMISS"
 
 
-LOG_HEAD = "MATSTD LOG 1"
-"""First line of every part of a log."""
+LOG_HEAD = "MATSTD LOG 1"  # first line of every part of a log
 
 _LINE = re.compile(r'"(?P<text>[^"]*)"(?P<arguments>(,[A-Z0-9]+)*);\Z')
 _FORMAT = re.compile(r"%(\d+)(?:\.(\d+))?(LF|d)")

@@ -99,8 +99,7 @@ def _without_deep_collisions(
             yield balls[k], every[k * len(along) + np.arange(len(along))]
 
 
-RAISED = 100.0
-"""Height by which a dry run is raised, mm."""
+RAISED = 100.0  # height by which a dry run is raised, mm
 
 
 @dataclass(frozen=True)

@@ -19,9 +19,7 @@ from matstd.twin.frames import Array, IntArray, Mask, apply, turn
 from matstd.twin.machine import Chain, table_to_tool, tip
 from matstd.twin.record import Labels, Setup
 
-SMALLEST_GAP = 0.5
-"""Least gap between the probe and any obstacle while it is positioned, mm."""
-
+SMALLEST_GAP = 0.5  # least gap between the probe and any obstacle while it is positioned, mm
 _MOVES_A_BLOCK = 200  # moves per block, to bound memory: each meets every body with every piece
 
 

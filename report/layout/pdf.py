@@ -14,9 +14,7 @@ BROWSERS = ("chromium", "chromium-browser", "google-chrome", "chrome", "msedge")
 """Names under which browsers that can print without a window are found."""
 
 _PATIENCE = 300.0  # s; a design report of 8 MB takes a browser 5 s
-
-Printer = Callable[[Path, Path], None]
-"""Prints a page into an existing, empty PDF."""
+Printer = Callable[[Path, Path], None]  # prints a page into an existing, empty PDF
 
 
 def printer() -> Printer:

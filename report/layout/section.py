@@ -16,8 +16,7 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 
-Heading = str | tuple[str, str]
-"""Of a column; a pair is a group of columns and the one in it."""
+Heading = str | tuple[str, str]  # of a column; a pair is a group of columns and the one in it
 
 
 @dataclass(frozen=True, slots=True, eq=False)

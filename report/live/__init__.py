@@ -22,8 +22,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from matstd.twin.words import in_own_unit
 
-TREE = dict[str, Any]
-"""What JSON holds, with packed arrays."""
+TREE = dict[str, Any]  # what JSON holds, with packed arrays
 
 _KINDS = ("f8", "f6", "f4", "f3", "i4", "u4", "i2", "u2", "i1", "u1")
 _IMPORT = re.compile(r'^import (\{[^}]*\}|\* as \w+) from "\.{1,2}/(?:parts/)?(\w+)\.js";', re.M)

@@ -17,8 +17,7 @@ from matstd.report.machine.played import played_probing
 from matstd.report.machine.set_up import set_up_bodies, with_clearance
 from matstd.twin.files import write_whole
 
-PLAYBACK = "playback.html"
-"""Name of the page."""
+PLAYBACK = "playback.html"  # name of the page
 
 TRIED = "the machine of errors.toml, on which the programs were tried first"
 

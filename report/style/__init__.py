@@ -39,9 +39,7 @@ _SERIES = (
 """The first six are Okabe and Ito's, distinguishable by colour-blind readers; more than twelve
 are not distinguishable."""
 
-DIVERGING = "RdBu_r"
-"""Map for signed values: red outside, blue inside, white nothing."""
-
+DIVERGING = "RdBu_r"  # map for signed values: red outside, blue inside, white nothing
 _STEP = 0.3  # towards white or black, at every turn of the twelve colours
 
 

@@ -31,8 +31,7 @@ PITCH_FRACTIONS = 4
 of the encoder."""
 PERIOD_OVERSAMPLING = 4.0
 """Scanned frequencies per resolvable one; the nearest keeps 97 % of a sine between two of them."""
-MAX_OVERTONES = 12
-"""Largest number of sines of one period; more would follow single steps."""
+MAX_OVERTONES = 12  # largest number of sines of one period; more would follow single steps
 FINEST_HARMONIC = 400
 """Highest harmonic in readings of angles: worms have up to 180 teeth, gears more."""
 HIGHEST_HARMONIC = 12

@@ -217,8 +217,7 @@ def _grown(touches: Touches, strain: Array) -> Sequence[Term]:
 
 BodyError = BodyTemperature | BodyExpansion | BodyScale  # parameters of the size of a standard
 
-Free = SetupError | StylusError | BodyError
-"""Parameters estimated beside the model of the machine."""
+Free = SetupError | StylusError | BodyError  # parameters estimated beside the model of the machine
 
 
 def setup_errors(touches: Touches) -> tuple[Free, ...]:

@@ -25,8 +25,7 @@ Nature = Literal["linear", "rotary", "time", "level", "sign"]
 
 SENSOR, OWN, LAST, TREND = "T-", "V-", "last-", "trend-"
 TIMES = ("time", "since-setup", "since-pose", "since-switch")
-ON_BALL = ("azimuth", "latitude")
-"""Where on the ball of the probe a contact is."""
+ON_BALL = ("azimuth", "latitude")  # where on the ball of the probe a contact is
 
 OTHERS = ("rpm", "load", *ON_BALL)
 

@@ -10,8 +10,7 @@ import re
 from dataclasses import dataclass
 from enum import Enum
 
-LETTERS = "XYZABC"
-"""Second letter of a name -> index of the component."""
+LETTERS = "XYZABC"  # second letter of a name -> index of the component
 ALONG = {**{k: k for k in "XYZ"}, **dict(zip("ABCUVW", "XYZXYZ", strict=True)), "S": "Z"}
 """Letter of an axis -> direction of the machine frame that it moves along or turns about (ISO 841).
 """

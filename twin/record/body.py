@@ -16,8 +16,7 @@ from matstd.twin.record.run import Run
 from matstd.twin.record.touches import Body
 from matstd.twin.units import T_REF
 
-BODY = "body"
-"""Name of the sensor that sits on the standard: column `T_body_degC`."""
+BODY = "body"  # name of the sensor that sits on the standard: column `T_body_degC`
 U_SHARE = 0.1
 """Relative standard uncertainty of an expansion stated without one. JCGM 100:2008, H.1.3.3: steel
 within 2e-6 of 11.5e-6 1/K, rectangular, u = 1.2e-6."""

@@ -17,11 +17,9 @@ from matstd.twin.record import Touches
 from matstd.twin.units import T_REF
 from matstd.twin.words import did_you_mean
 
-SPINDLE = "spindle_rpm"
-"""The drive that is no sensor: the spindle speed of the run file."""
+SPINDLE = "spindle_rpm"  # the drive that is no sensor: the spindle speed of the run file
 SPEED_UNIT = 1.0e4  # amplitudes after the spindle speed are those at 10 000 rpm, 1/min
-CYCLE = "cycle_1"
-"""Own column that counts the cycles of a positioning test, as import writes it."""
+CYCLE = "cycle_1"  # own column that counts the cycles of a positioning test, as import writes it
 PROGRESS = "cycles_done_1"
 """Own column beside it: cycles that were done when a reading was taken, parts of them included."""
 OWN = "V_"  # begins a drive that is a column of the user's own, as in the run file
