@@ -29,21 +29,13 @@ lies (ISO 14253-1:2017)."""
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """Whether a characteristic of a feature is within its tolerance, by ISO 14253-1.
+    """Whether a characteristic of a feature is within its tolerance, by ISO 14253-1."""
 
-    Attributes:
-        feature: Name; for the scale the names of the two balls with the largest distance.
-        characteristic: `diameter`, `form`, `position`, `profile` or `scale`.
-        deviation: Measured minus designed, mm.
-        tolerance: Largest allowed deviation, mm.
-        u: Standard uncertainty of the deviation, mm.
-    """
-
-    feature: str
-    characteristic: str
-    deviation: float
-    tolerance: float
-    u: float
+    feature: str  # name; for the scale the names of the two balls with the largest distance
+    characteristic: str  # `diameter`, `form`, `position`, `profile` or `scale`
+    deviation: float  # measured minus designed, mm
+    tolerance: float  # largest allowed deviation, mm
+    u: float  # standard uncertainty of the deviation, mm
 
     @property
     def is_refused(self) -> bool:

@@ -52,27 +52,19 @@ class Core:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Standard(Displayed):
-    """A freeform material standard in its own frame: origin in the middle of the seat, z up.
-
-    Attributes:
-        serial: Serial number of the piece; may be empty.
-        base: Plate with the seat and the datum plane.
-        core: Body in which the columns meet, or None.
-        blank_height: Of the blank above the seat, mm; its outline is that of the base.
-        known: Its calibration; None for a standard as designed.
-        sag: Displacements by its own weight as stated in its file; None where not computed.
-    """
+    """A freeform material standard in its own frame: origin in the middle of the seat, z up."""
 
     name: str  # on drawing, programs and runs
-    serial: str
+    serial: str  # serial number of the piece; may be empty
     material: Material  # of the body
-    base: Base
-    core: Core | None
+    base: Base  # plate with the seat and the datum plane
+    core: Core | None  # body in which the columns meet, or None
     patches: tuple[FreeformPatch, ...]  # freeform faces
     spheres: tuple[DatumSphere, ...]  # balls
     holes: tuple[MountingHole, ...]  # by which it is screwed to the table
-    blank_height: float
-    known: Known | None = None
+    blank_height: float  # of the blank above the seat, mm; its outline is that of the base
+    known: Known | None = None  # its calibration; None for a standard as designed
+    # displacements by its own weight as stated in its file; None where not computed
     sag: Sag | None = None
 
     def __post_init__(self) -> None:

@@ -28,20 +28,15 @@ class Calibration:
     """Standard uncertainties of the features' places in their calibration; zeros for none.
 
     The defaults are what a good coordinate measuring machine reaches on a part of this size.
-
-    Attributes:
-        patch: Of each coordinate of a freeform patch, mm.
-        patch_tilt: Of each rotation of a patch, rad.
-        ball: Of each coordinate of the centre of a datum sphere, mm.
-        scale: Of all lengths, relative, one error that every feature shares. It is no column: with
-            the temperature it belongs to the body of a run (`Body`), which every fit has.
-        form: Of the surface of a face at a point, beside its place; points nearby share it, mm.
     """
 
-    patch: float = 1.0 * UM
-    patch_tilt: float = 10.0 * URAD
-    ball: float = 0.3 * UM
+    patch: float = 1.0 * UM  # of each coordinate of a freeform patch, mm
+    patch_tilt: float = 10.0 * URAD  # of each rotation of a patch, rad
+    ball: float = 0.3 * UM  # of each coordinate of the centre of a datum sphere, mm
+    # of all lengths, relative, one error that every feature shares. It is no column: with the
+    # temperature it belongs to the body of a run (`Body`), which every fit has.
     scale: float = 1e-6
+    # of the surface of a face at a point, beside its place; points nearby share it, mm
     form: float = 0.3 * UM
 
     def __post_init__(self) -> None:

@@ -89,22 +89,19 @@ PROBING = re.compile(r"\bSTANDARD (\S+) SETUP \S+")
 class ProgramOptions:
     """What a part program leaves open.
 
-    Attributes:
-        tools: Lengths by number or name of the tool, mm; other tools have that of the datum.
-        radii: Radii of tools, mm, where the program goes beside a contour (RL, RR, G41, G42).
-        pass_m: M functions of the machine that move nothing and change no coordinates.
-        tcp_m: M functions of G-code that switch tool-point control on and off.
-        loads: File with the process forces by the lines of the program; None for none.
-
     Example:
         >>> ProgramOptions(tools={1: 120.0}, pass_m=[88]).tools
         {1: 120.0}
     """
 
+    # lengths by number or name of the tool, mm; other tools have that of the datum
     tools: Mapping[int | str, float] | None = None
+    # radii of tools, mm, where the program goes beside a contour (RL, RR, G41, G42)
     radii: Mapping[int | str, float] | None = None
+    # M functions of the machine that move nothing and change no coordinates
     pass_m: Sequence[int] = ()
-    tcp_m: Sequence[int] = ()
+    tcp_m: Sequence[int] = ()  # M functions of G-code that switch tool-point control on and off
+    # file with the process forces by the lines of the program; None for none
     loads: str | Path | None = None
 
     def read(self, path: str | Path, frame: Frame) -> Program:
@@ -125,14 +122,6 @@ class ProgramOptions:
 class Compensation(Displayed):
     """A machine to be compensated; `compensate` and `Diagnosis.compensate` return it.
 
-    Attributes:
-        errors: As they are known, in their state.
-        datum: To which everything refers.
-        poses: Over which a compensation is judged, (N, A).
-        model: Hash of what the errors were read from; tables state it.
-        title: Name of the model.
-        remarks: What the user should know of the model.
-
     Example:
         >>> files = machine_file("hmc1995"), machine_file("hmc1995", errors=True)
         >>> found = compensate(*files, tool_length=100.0).tables("tables", ["iso230"])
@@ -140,12 +129,12 @@ class Compensation(Displayed):
         [('iso230.csv',)]
     """
 
-    errors: MachineErrors
-    datum: Datum
-    poses: Array
-    model: str
-    title: str
-    remarks: tuple[Remark, ...] = ()
+    errors: MachineErrors  # as they are known, in their state
+    datum: Datum  # to which everything refers
+    poses: Array  # over which a compensation is judged, (N, A)
+    model: str  # hash of what the errors were read from; tables state it
+    title: str  # name of the model
+    remarks: tuple[Remark, ...] = ()  # what the user should know of the model
 
     def header(self, sign: int = 1) -> Header:
         """Head of a table; -1 where a control wants the opposite sign."""

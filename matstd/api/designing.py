@@ -19,20 +19,15 @@ if TYPE_CHECKING:
 class Sensitivities:
     """A study of the random machines of a project.
 
-    Attributes:
-        study: Sensitivities, maps, random machines.
-        remarks: What could not be drawn.
-        folder: With the files.
-
     Example:
         >>> made = Project.read("project.toml").sensitivity("study")  # doctest: +SKIP
         >>> made.study.volumetric.recurrence.shape  # doctest: +SKIP
         (2000,)
     """
 
-    study: Study
-    remarks: tuple[str, ...]
-    folder: Path
+    study: Study  # sensitivities, maps, random machines
+    remarks: tuple[str, ...]  # what could not be drawn
+    folder: Path  # with the files
 
     def __repr__(self) -> str:
         study = self.study
@@ -46,9 +41,6 @@ class Sensitivities:
 class Project:
     """What is designed, for which machine: a project file, checked and resolved.
 
-    Attributes:
-        brief: Machine, probe, workshop, blank, expected errors and wishes, in base units.
-
     Example:
         >>> project = Project.read("project.toml")
         >>> project
@@ -58,7 +50,7 @@ class Project:
         'FF1'
     """
 
-    brief: Brief
+    brief: Brief  # machine, probe, workshop, blank, expected errors and wishes, in base units
 
     @classmethod
     def read(

@@ -63,14 +63,6 @@ if TYPE_CHECKING:
 class Diagnosis(Saveable, answer.Diagnosis):
     """What a model lacks, with what it was made from; `diagnose` returns it.
 
-    Attributes:
-        before: The model file that it began with and that learnt from other runs.
-        title: Names of the runs.
-        named: Number of effects that the user named.
-        auto: Whether the model that is learnt has what the diagnosis found; else only effects that
-            the user named. Of an unexplained run it has what was found and the law in any case.
-        body: Triangles of what was probed, where it is known.
-
     Example:
         >>> found = diagnose("run.csv", only=["thermal-lag"])
         >>> found.verdict.value, [effect.kind for effect in found.found]
@@ -80,11 +72,14 @@ class Diagnosis(Saveable, answer.Diagnosis):
     sometimes = (
         "next_measurement_*.csv", FOUND, EFFECT, LAW, VISIT, "pictures/*.png", *REPORT_FILES
     )  # fmt: skip
+    # the model file that it began with and that learnt from other runs
     before: SavedModel | None = None
-    title: str = ""
-    named: int = 0
+    title: str = ""  # names of the runs
+    named: int = 0  # number of effects that the user named
+    # whether the model that is learnt has what the diagnosis found; else only effects that the user
+    # named. Of an unexplained run it has what was found and the law in any case.
     auto: bool = False
-    body: Array | None = None
+    body: Array | None = None  # triangles of what was probed, where it is known
 
     @property
     def learnt(self) -> Fit:
@@ -295,11 +290,6 @@ def _is_among(effect: Effect, words: Iterable[str]) -> bool:
 class Comparison(Saveable, answer.Comparison):
     """A run against a model, with what it was made from; `compare` returns it.
 
-    Attributes:
-        saved: The model file, where the model is of one.
-        title: Names of the runs.
-        body: Triangles of what was probed, where it is known.
-
     Example:
         >>> found = compare("run.csv")
         >>> found.structure[0].variables
@@ -307,9 +297,9 @@ class Comparison(Saveable, answer.Comparison):
     """
 
     sometimes = (FOUND, "pictures/*.png", *REPORT_FILES)
-    saved: SavedModel | None = None
-    title: str = ""
-    body: Array | None = None
+    saved: SavedModel | None = None  # the model file, where the model is of one
+    title: str = ""  # names of the runs
+    body: Array | None = None  # triangles of what was probed, where it is known
 
     def write(self, folder: Path) -> str:
         """Write comparison.json and residuals.csv into an existing folder; as of `Saveable`."""

@@ -56,29 +56,21 @@ MIN_ROWS = 40  # rows to learn from: ten for each of the blocks that are left ou
 class DriftLaws(Displayed):
     """Laws of a thermal drift beside one another; `learn_drift` returns it.
 
-    Attributes:
-        record: All logs as one.
-        train: Rows that the laws were learnt from.
-        held: Rows that were held out.
-        judged: Every law with its errors.
-        best: The one that is chosen.
-        probings: What probing the drift now and then would leave, as a sentence.
-        logs: Names of the logs that were learnt from, and of those that were held out.
-        sensor_noise: Noise on temperatures that the laws were judged with, too, K.
-
     Example:
         >>> found = learn_drift(["drift.csv"])
         >>> any(one is found.best for one in found.judged)
         True
     """
 
-    record: DriftRecord
-    train: IntArray
-    held: IntArray
-    judged: tuple[Judged, ...]
-    best: Judged
-    probings: tuple[str, ...]
+    record: DriftRecord  # all logs as one
+    train: IntArray  # rows that the laws were learnt from
+    held: IntArray  # rows that were held out
+    judged: tuple[Judged, ...]  # every law with its errors
+    best: Judged  # the one that is chosen
+    probings: tuple[str, ...]  # what probing the drift now and then would leave, as a sentence
+    # names of the logs that were learnt from, and of those that were held out
     logs: tuple[tuple[str, ...], tuple[str, ...]]
+    # noise on temperatures that the laws were judged with, too, K
     sensor_noise: float | None = None
 
     @property
@@ -244,21 +236,15 @@ def _probed(every: float, u: float, record: DriftRecord, held: IntArray, best: J
 class DriftPrediction(Displayed):
     """The drift of a log by an earlier law; `predict_drift` returns it.
 
-    Attributes:
-        record: The log.
-        law: What the law is called.
-        predicted: Displacements, (N, K), units of the record.
-        u: Their standard uncertainties, (N, K).
-
     Example:
         >>> learn_drift(["drift.csv"]).save("laws")
         >>> predict_drift("laws/thermal.json", "drift.csv").save("prediction")
     """
 
-    record: DriftRecord
-    law: str
-    predicted: Array
-    u: Array
+    record: DriftRecord  # the log
+    law: str  # what the law is called
+    predicted: Array  # displacements, (N, K), units of the record
+    u: Array  # their standard uncertainties, (N, K)
 
     def save(self, folder: str | Path, force: bool = False) -> None:
         """Write drift.csv and its picture into a folder, whole or not at all."""

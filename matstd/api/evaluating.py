@@ -42,21 +42,15 @@ from matstd.twin.units import UM
 class Evaluation(Displayed):
     """Logs of a control made measurements; `evaluate` returns it.
 
-    Attributes:
-        measured: The measurements; None where the logs have touches on a ball alone.
-        chain: The machine.
-        probe_remarks: What the logs say of the probe.
-        remarks: What else the user should know.
-
     Example:
         >>> found = evaluate(["logs/MS_A_1.TXT"], "standard.toml", "machine.toml")
         >>> found.save("evaluated.csv", "machine.toml")
     """
 
-    measured: Run | None
-    chain: Chain
-    probe_remarks: tuple[str, ...]
-    remarks: tuple[str, ...] = ()
+    measured: Run | None  # the measurements; None where the logs have touches on a ball alone
+    chain: Chain  # the machine
+    probe_remarks: tuple[str, ...]  # what the logs say of the probe
+    remarks: tuple[str, ...] = ()  # what else the user should know
 
     @property
     def run(self) -> Run:

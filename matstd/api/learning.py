@@ -39,11 +39,6 @@ from matstd.twin.words import deviations_in
 class LearntLaws(Saveable, laws.Learning):
     """Laws that explain what a model leaves of a run; `learn` returns it.
 
-    Attributes:
-        second: What a second run says of them; None without one.
-        title: Names of the runs.
-        body: Triangles of what was probed, where it is known.
-
     Example:
         >>> found = learn("run.csv", add=["thermal-lag(EZZ)"])
         >>> found.laws, found.effect_text
@@ -51,9 +46,9 @@ class LearntLaws(Saveable, laws.Learning):
     """
 
     sometimes = (EFFECT, VISIT, "pictures/*.png", *REPORT_FILES)
-    second: SecondRun | None = None
-    title: str = ""
-    body: Array | None = None
+    second: SecondRun | None = None  # what a second run says of them; None without one
+    title: str = ""  # names of the runs
+    body: Array | None = None  # triangles of what was probed, where it is known
 
     @property
     def model_text(self) -> str:

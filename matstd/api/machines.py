@@ -106,15 +106,10 @@ class ToolPointDeviations(Tabular):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Sensitivities(Tabular):
-    """Sensitivity of the tool point to every error parameter; `sensitivities` returns it.
+    """Sensitivity of the tool point to every error parameter; `sensitivities` returns it."""
 
-    Attributes:
-        names: Parameters, by their symbols of ISO 230-1.
-        S: Size of the deviation per unit of each, (N, P), µm/µm, or µm/µrad of an angular one.
-    """
-
-    names: tuple[str, ...]
-    S: Array
+    names: tuple[str, ...]  # parameters, by their symbols of ISO 230-1
+    S: Array  # size of the deviation per unit of each, (N, P), µm/µm, or µm/µrad of an angular one
 
     number_format = ".9g"
 

@@ -127,19 +127,14 @@ def _thermometers(record: SensorRecord | None) -> Callable[[str, float], float]:
 class Simulation(Displayed):
     """Programs that were run on the twin; `simulate` returns it.
 
-    Attributes:
-        run: The measurements.
-        campaign: What each program did, with the logs.
-        remarks: What the logs say of the probe, and what else the user should know.
-
     Example:
         >>> found = simulate(["programs/MS_A_1.H"], "standard.toml", "machine.toml")
         >>> found.save("simulated.csv", "machine.toml")
     """
 
-    run: Run
-    campaign: Campaign
-    remarks: tuple[str, ...]
+    run: Run  # the measurements
+    campaign: Campaign  # what each program did, with the logs
+    remarks: tuple[str, ...]  # what the logs say of the probe, and what else the user should know
 
     def save(
         self,

@@ -56,26 +56,18 @@ OURS = (*REPORT_FILES, *SHEET_FILES, "programs/*")  # files that not every repla
 class Replanned(Displayed):
     """Programs for where the standard stands; `replan` and `planned_visit` return it.
 
-    Attributes:
-        design: Folder of the design.
-        setup: Where the standard stands.
-        stations: Plans and programs of every probe.
-        feeds: Of the programs.
-        lines: Sentences on the place that was found, or on how a visit is made.
-        left_alone: Set-ups whose programs stay as they are.
-
     Example:
         >>> found = replan(["logs/MS_A_1.TXT"], ".")
         >>> found.left_alone
         ()
     """
 
-    design: Path
-    setup: Setup
-    stations: tuple[Station, ...]
-    feeds: Feeds
-    lines: tuple[str, ...]
-    left_alone: tuple[str, ...]
+    design: Path  # folder of the design
+    setup: Setup  # where the standard stands
+    stations: tuple[Station, ...]  # plans and programs of every probe
+    feeds: Feeds  # of the programs
+    lines: tuple[str, ...]  # sentences on the place that was found, or on how a visit is made
+    left_alone: tuple[str, ...]  # set-ups whose programs stay as they are
 
     @property
     def programs(self) -> ProgramSet:

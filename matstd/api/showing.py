@@ -55,15 +55,12 @@ DURATION = 8.0 * HOUR  # after the start over which drifts are shown at least, s
 class MachinePage(Displayed):
     """A machine that moves; `show` returns it, and a notebook shows it.
 
-    Attributes:
-        shown: What is on the page.
-
     Example:
         >>> page = show(machine_file("hmc1995"), machine_file("hmc1995", errors=True))
         >>> page.save("machine.html")
     """
 
-    shown: ShownMachine
+    shown: ShownMachine  # what is on the page
 
     @property
     def html(self) -> str:

@@ -69,9 +69,6 @@ def standard_of(standard: Standard | str | Path) -> Standard:
 class Calibration(CalibrationFit, Displayed):
     """A calibrated standard and what its calibration found; `calibrate` returns it.
 
-    Attributes:
-        refusal: Why the standard does not conform to its drawing; "" where it does.
-
     Example:
         >>> found = calibrate("standard.toml", "cmm.csv")
         >>> found.save("calibrated.toml")
@@ -79,7 +76,7 @@ class Calibration(CalibrationFit, Displayed):
         False
     """
 
-    refusal: str = ""
+    refusal: str = ""  # why the standard does not conform to its drawing; "" where it does
 
     def check(self) -> None:
         """Raise NotConforming where the standard does not conform to its drawing."""
@@ -203,26 +200,19 @@ def as_designed(standard: Standard | str | Path) -> Standard:
 class TaskBudget(Displayed):
     """Uncertainty of a measuring task; `uncertainty` returns it.
 
-    Attributes:
-        task: What is measured.
-        standard: What was measured.
-        found: Budgets by what results are corrected with, `as measured` first.
-        visits: What the visits found.
-        runs: Names of the visits with their numbers of touches.
-        remarks: On the runs and the model.
-
     Example:
         >>> found = uncertainty(["monday.csv", "friday.csv"], "standard.toml")
         >>> found.sentence
         '25 places on 4 faces at 4 table poses in 2 visits'
     """
 
-    task: Task
-    standard: Standard
+    task: Task  # what is measured
+    standard: Standard  # what was measured
+    # budgets by what results are corrected with, `as measured` first
     found: Mapping[str, TaskUncertainty]
-    visits: Visits
-    runs: tuple[tuple[str, int], ...]
-    remarks: tuple[str, ...]
+    visits: Visits  # what the visits found
+    runs: tuple[tuple[str, int], ...]  # names of the visits with their numbers of touches
+    remarks: tuple[str, ...]  # on the runs and the model
 
     @property
     def sentence(self) -> str:

@@ -38,43 +38,27 @@ class Proven:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Design(Displayed):
-    """Everything that a design run made; the files of the same names hold it.
+    """Everything that a design run made; the files of the same names hold it."""
 
-    Attributes:
-        brief: What was asked for.
-        study: Sensitivities and random machines.
-        maps: File and caption of the study's pictures.
-        placement: Standard and touches.
-        worst: What the faces see of the poses that are wrong again and again.
-        conformity: CAD files, measured after they were written.
-        making: Reach of cutters, first mode, sag.
-        stations: Touches in their order and the programs that make them, by clamping and probe.
-        machines: Random machines, probed and identified.
-        identifiability: What the touches can and cannot distinguish.
-        effective: Number of parameters that the first machine's data decide rather than the prior.
-        budgets: Uncertainty of the user's task on the first machine, by what corrects results.
-        visits: What they rest upon.
-        times: Time on the machine of every artefact, and of every order of the touches.
-        remarks: What could not be drawn.
-        folder: With the files; None before they are in their place.
-    """
-
-    brief: Brief
-    study: Study
-    maps: list[tuple[str, str]]
-    placement: Placement
-    worst: WorstRegions
-    conformity: Conformity
-    making: Making
+    brief: Brief  # what was asked for
+    study: Study  # sensitivities and random machines
+    maps: list[tuple[str, str]]  # file and caption of the study's pictures
+    placement: Placement  # standard and touches
+    worst: WorstRegions  # what the faces see of the poses that are wrong again and again
+    conformity: Conformity  # CAD files, measured after they were written
+    making: Making  # reach of cutters, first mode, sag
+    # touches in their order and the programs that make them, by clamping and probe
     stations: tuple[Station, ...]
-    machines: tuple[Proven, ...]
-    identifiability: IdentifiabilityReport
+    machines: tuple[Proven, ...]  # random machines, probed and identified
+    identifiability: IdentifiabilityReport  # what the touches can and cannot distinguish
+    # number of parameters that the first machine's data decide rather than the prior
     effective: float
+    # uncertainty of the user's task on the first machine, by what corrects results
     budgets: Mapping[str, TaskUncertainty]
-    visits: Visits
-    times: MachineTimes
-    remarks: tuple[str, ...] = ()
-    folder: Path | None = None
+    visits: Visits  # what they rest upon
+    times: MachineTimes  # time on the machine of every artefact, and of every order of the touches
+    remarks: tuple[str, ...] = ()  # what could not be drawn
+    folder: Path | None = None  # with the files; None before they are in their place
 
     @property
     def standard(self) -> Standard:

@@ -85,23 +85,17 @@ class Axis:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Chain(Displayed):
-    """A machine: its links from workpiece to tool, and the position of its table.
-
-    Attributes:
-        notation: ISO chain notation as the user wrote it.
-        links: `w` first, `t` last, without the foundation.
-        table_origin: Origin of the table frame, machine frame with every axis at zero, (3,), mm.
-        assumed_points: Rotary axes without a stated line; they are assumed to turn about a line
-            through the machine's origin.
-        drawings: Files that draw the bodies of links, `f` for the foundation; pictures alone
-            depend on them.
-    """
+    """A machine: its links from workpiece to tool, and the position of its table."""
 
     name: str  # as its file states it
-    notation: str
-    links: tuple[Link, ...]
+    notation: str  # ISO chain notation as the user wrote it
+    links: tuple[Link, ...]  # `w` first, `t` last, without the foundation
+    # origin of the table frame, machine frame with every axis at zero, (3,), mm
     table_origin: Array = field(default_factory=lambda: np.zeros(3))
+    # rotary axes without a stated line; they are assumed to turn about a line through the machine's
+    # origin
     assumed_points: tuple[str, ...] = ()
+    # files that draw the bodies of links, `f` for the foundation; pictures alone depend on them
     drawings: Mapping[str, Path] = field(default_factory=dict)
 
     @property

@@ -15,14 +15,10 @@ from matstd.twin.record import Touches
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Model(Displayed):
-    """Chain plus effects; parameters of all effects stand in one vector, effect after effect.
-
-    Attributes:
-        effects: The physics in the model.
-    """
+    """Chain plus effects; parameters of all effects stand in one vector, effect after effect."""
 
     chain: Chain  # the machine
-    effects: tuple[Effect, ...]
+    effects: tuple[Effect, ...]  # the physics in the model
 
     @cached_property
     def parameters(self) -> tuple[tuple[Effect, Parameter], ...]:
