@@ -136,11 +136,7 @@ def read_standard(path: str | Path) -> Standard:
 
 
 def write_standard(path: str | Path, standard: Standard) -> None:
-    """Write `standard.toml` whole or not at all; reading it returns the same numbers.
-
-    Args:
-        standard: In base units.
-    """
+    """Write `standard.toml` whole or not at all; reading it returns the same numbers."""
     import tomli_w
 
     write_whole(path, tomli_w.dumps(_table(standard)))

@@ -65,11 +65,7 @@ class Task:
 
 
 def read_task(path: str | Path) -> Task:
-    """Read a task.
-
-    Raises:
-        BadFile: Unreadable, no TOML, another format, a key unknown or out of range.
-    """
+    """Read a task; raises BadFile with the key, what stood there and what was expected."""
     file = checked(TaskTable, read_toml(path, "task/1"), path)
     refuse_unit_slips(file, path)
     ranges = {"slope_deg": file.slope_deg, "curvature_1_m": file.curvature_1_m}

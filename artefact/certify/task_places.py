@@ -33,11 +33,7 @@ def that_prove(standard: Standard, touches: Touches) -> Mask:
 
 
 def like_task(task: Task, standard: Standard, touches: Touches) -> Mask:
-    """Touches that prove within all ranges of a task, (N,).
-
-    Raises:
-        DesignError: None; the message states the number and the range within each condition.
-    """
+    """Touches that prove within all ranges of a task, (N,); raises DesignError for none."""
     chain = touches.chain
     for letter in task.rotary:
         if letter not in chain.rotary_axes:

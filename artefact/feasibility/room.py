@@ -74,11 +74,7 @@ class Room:
 
 
 def check_room(room: Room) -> None:
-    """Reject faces that do not fit; the message states how many do.
-
-    Raises:
-        NotBuildable: Fewer faces or balls than wanted (fact `fitting`).
-    """
+    """Raise NotBuildable where fewer faces or balls fit than wanted (fact `fitting`)."""
     few, limits = len(room.faces) < room.wanted, room.blank.limits
     places = f"{room.tried} places tried"
     if room.reached < room.tried:
@@ -237,11 +233,7 @@ def _plate_and_balls(
 
 
 def check_blank(base: Base, reach: ProbeReach) -> None:
-    """Reject a blank whose sides reach beyond the table; its corners may.
-
-    Raises:
-        NotBuildable: With both sizes.
-    """
+    """Raise NotBuildable for a blank whose sides reach beyond the table; its corners may."""
     if max(base.half_size) > reach.table_radius:
         a, b = (2.0 * side for side in base.half_size)
         raise NotBuildable(

@@ -58,11 +58,7 @@ def mutually_probeable(
     balls: Sequence[DatumSphere],
     poses: Array,
 ) -> ProbeAccess:
-    """Access of the probe to faces, each alone and in pairs.
-
-    Args:
-        poses: Table poses of the touches, (K, R), rad.
-    """
+    """Access of the probe to faces, alone and in pairs, at table poses (K, R), rad."""
     tried = touches_on(faces, poses)
     tried = tried[reach.is_reachable(tried)]
     names = np.array([face.name for face in faces])

@@ -38,11 +38,7 @@ def touches_on_faces(
 def proving_touches(
     criterion: Criterion, standard: Standard, tried: Requests, identifying: Requests, count: int
 ) -> Requests:
-    """Touches that cover the faces evenly, at the most informative table poses.
-
-    Raises:
-        NotReachable: Too few can be made.
-    """
+    """Touches that cover the faces evenly, at the best table poses; raises NotReachable."""
     _check_enough(tried, count)
     place = np.unique(tried.point, axis=0, return_inverse=True)[1].reshape(-1)
     kept = np.isin(place, _even_places(standard, tried, place, count))

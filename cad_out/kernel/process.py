@@ -119,11 +119,7 @@ CHORD = 0.3
 
 
 def step_triangles(path: Path, chord: float = CHORD) -> Array:
-    """Corners of the triangles of all bodies of a STEP file, (T, 3, 3), mm.
-
-    Raises:
-        NotBuildable: A file that the kernel cannot read.
-    """
+    """Triangles of all bodies of a STEP file, (T, 3, 3), mm; raises NotBuildable."""
     with tempfile.TemporaryDirectory(prefix="step-", ignore_cleanup_errors=True) as name:
         folder = Path(name)
         shutil.copyfile(path, folder / STEP)

@@ -60,11 +60,7 @@ class Stiffness:
 
 
 def with_sag(standard: Standard, stiffness: Stiffness, down: str) -> Standard:
-    """The standard with the correction that evaluations use.
-
-    Args:
-        down: Where weight pulls to in machine coordinates.
-    """
+    """The standard with the sag that evaluations use; weight pulls to `down` of the machine."""
     made_of = standard.material
     share = round(float(np.hypot(_SHARE, made_of.modulus_share)), 2)
     per_weight = stiffness.per_weight

@@ -63,11 +63,7 @@ def welded(corners: Array, triangles: np.ndarray, owner: np.ndarray) -> Mesh:
 
 
 def ball_mesh(sphere: DatumSphere, chord: float) -> Mesh:
-    """A ball of nearly equal triangles: an icosahedron whose sides are cut and blown up.
-
-    Args:
-        chord: Largest distance of a triangle from the ball, mm.
-    """
+    """A ball of nearly equal triangles, at most `chord` (mm) from it: an icosahedron, cut finer."""
     corners, faces = _icosahedron()
     # the middle of a triangle of edge e lies e^2 / 6 R below; the largest is a fifth wider
     edge = np.sqrt(6.0 * sphere.radius * chord) / 1.25

@@ -21,11 +21,7 @@ def sign_of(words: str) -> int:
 
 
 def signs(sheet: Sheet, column: int) -> IntArray:
-    """Signs of the directions of approach in a column, (N,); 0 where a cell is empty.
-
-    Raises:
-        BadFile: A cell that says neither.
-    """
+    """Signs of directions of approach in a column, (N,), 0 for none; raises BadFile for others."""
     out = np.zeros(len(sheet), dtype=np.int64)
     for i, word in enumerate(sheet.text(column)):
         out[i] = int(word) if word in ("1", "-1", "0") else sign_of(word)

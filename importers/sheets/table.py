@@ -62,11 +62,7 @@ def read_sheet(
 def read_tables(
     path: str | Path, name: str | None = None, names: Sequence[str] = ()
 ) -> tuple[Sheet, ...]:
-    """Every table of a foreign file, numbered in its order.
-
-    Raises:
-        BadFile: As `read_sheet`.
-    """
+    """Every table of a foreign file, numbered in its order; raises BadFile as `read_sheet`."""
     path = Path(path)
     if path.suffix.lower() in WORKBOOKS:
         found = _workbook(path, name, names)

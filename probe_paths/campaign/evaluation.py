@@ -117,11 +117,7 @@ def sag_remarks(standard: Standard) -> list[str]:
 
 
 def touch_uncertainty(standard: Standard, t: Touches, u: Array | float) -> Array:
-    """Standard uncertainty of every touch with those of calibration and sag, (N,), mm.
-
-    Args:
-        u: Of the touches themselves, mm.
-    """
+    """Standard uncertainty of every touch: its own `u`, calibration and sag, (N,), mm."""
     known = {} if standard.known is None else standard.known.features
     form = np.array([known[name].u_form if name in known else 0.0 for name in t.feature.tolist()])
     moved = standard.moved(t.chain, t.q, t.T_table_artefact, t.feature)

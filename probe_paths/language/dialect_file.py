@@ -40,11 +40,7 @@ def known_controls() -> list[str]:
 
 
 def read_dialect(control: str, folder: str | Path = ".") -> Dialect:
-    """Dialect by the name of a control, or from a file of the user's own; raises DesignError.
-
-    Args:
-        control: A name, or a path that ends in `.toml`.
-    """
+    """Dialect by the name of a control, or from a `.toml` file; raises DesignError."""
     is_own = control.endswith(".toml")
     path = Path(folder) / control if is_own else _SHIPPED / f"{control}.toml"
     if not is_own and control not in known_controls():

@@ -139,11 +139,7 @@ def _mask(lines: Sequence[Fields]) -> str:
 def shared_masks(
     form: LogForm, decimals: int, rotary: Sequence[str], sensors: Sequence[Sensor] = ()
 ) -> dict[str, str]:
-    """Masks that every program of a campaign uses, by file name.
-
-    Args:
-        sensors: Temperatures that are logged with every touch.
-    """
+    """Masks that every program of a campaign uses, by file name; `sensors` are logged, too."""
     clock = form.clock
     missed = _fields([("NOCONTACT P", Q.TOUCH)], form.counter)
     return {

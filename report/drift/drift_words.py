@@ -72,11 +72,7 @@ def clock_line(lead: float) -> str:
 
 
 def kept_line(result: ProbedPrediction, record: DriftRecord, rows: IntArray, every: float) -> str:
-    """Error with occasional probing, with a law and without.
-
-    Args:
-        every: Time between two probings, s.
-    """
+    """Error with probings `every` so often (s), with a law and without."""
     left, plain = (
         together(np.sqrt(np.mean((v - record.displacement)[rows] ** 2, axis=0)), record)
         for v in (result.predicted, result.offset_only)

@@ -18,11 +18,7 @@ Printer = Callable[[Path, Path], None]  # prints a page into an existing, empty 
 
 
 def printer() -> Printer:
-    """What prints pages here, asked for before the work begins.
-
-    Raises:
-        MissingLibrary: Neither WeasyPrint nor a browser is here.
-    """
+    """What prints pages, asked for before the work begins; raises MissingLibrary for nothing."""
     try:
         import weasyprint  # noqa: F401
     except (ImportError, OSError):  # OSError: it is here, the system library Pango is not
@@ -37,11 +33,7 @@ def printer() -> Printer:
 
 
 def write_pdf(page: Path, path: Path, printed_by: Printer) -> None:
-    """Print a page.
-
-    Raises:
-        DesignError: The browser fails.
-    """
+    """Print a page; raises DesignError where the browser fails."""
     with written_whole(path) as part:
         printed_by(page.resolve(), part)
 

@@ -34,11 +34,7 @@ def body_meshes(chain: Chain) -> list[Drawn]:
 
 
 def drawing_triangles(path: Path) -> Array:
-    """Corners of all triangles of an STL, OBJ, PLY or STEP file, (T, 3, 3), mm.
-
-    Raises:
-        BadFile: A file that is no mesh and no STEP file, or has nothing in it.
-    """
+    """Triangles (T, 3, 3), mm, of an STL, OBJ, PLY or STEP file; raises BadFile for no mesh."""
     expected = f"one of {', '.join((*_MESHES, *_STEPS))}"
     kind = path.suffix.lower()
     if kind not in (*_MESHES, *_STEPS):

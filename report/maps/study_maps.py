@@ -130,11 +130,7 @@ _BINS = 12
 def draw_maps(
     study: Study, folder: Path, rng: np.random.Generator | None = None
 ) -> list[tuple[str, str]]:
-    """Draw every map of a study into a folder.
-
-    Returns:
-        File name and caption of each.
-    """
+    """Draw every map of a study into a folder; file name and caption of each."""
     sampled = f"Monte Carlo: {sampling_words(study.volumetric)}; {len(study.q)} poses."
     maps = [
         (

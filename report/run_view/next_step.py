@@ -7,11 +7,7 @@ from matstd.report.numbers import plural
 
 
 def diagnosis_step(result: Diagnosis, title: str, is_saved: bool = False) -> str:
-    """After a diagnosis.
-
-    Args:
-        is_saved: Whether the model file has what was found.
-    """
+    """After a diagnosis; `is_saved` where the model file has what was found."""
     if result.verdict is Verdict.UNDECIDED:
         what = plural(len(result.repeat), "touch") if len(result.repeat) else "some touches"
         return f"Repeat {what}; their scatter decides whether the residual is noise."

@@ -129,11 +129,7 @@ def _remains(part: Remainder, repeats: Repeatability) -> str:
 
 
 def repeatability_words(found: Repeatability, scatter: float) -> str:
-    """Scatter of the residual beside that of repeated touches and the stated noise.
-
-    Args:
-        scatter: Of the residual, mm.
-    """
+    """Scatter of the residual (mm) beside that of repeated touches and the stated noise."""
     kinds = (("replicates", found.replicates), ("re-visited places", found.revisits))
     seen: list[Scatter] = []
     repeats = []

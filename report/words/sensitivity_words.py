@@ -77,11 +77,7 @@ def place_words(place: Place) -> str:
 
 
 def dominant_words(region: Region, names: Sequence[str], enough: float = 0.5) -> str:
-    """Errors that cause most of the deviation in a region.
-
-    Args:
-        enough: Smallest share that the named errors cause together.
-    """
+    """Errors that together cause a share of `enough` of the deviation in a region."""
     shares = region.mean_shares
     order = region.largest(len(shares))
     if not order:
