@@ -62,6 +62,7 @@ from matstd.artefact.worth import (
     sphere_grid,
     touches_to_choose_from,
 )
+from matstd.twin.errors import NotReachable
 from matstd.twin.frames import Array
 from matstd.twin.numbers import rms
 from matstd.twin.units import DEG, UM
@@ -146,8 +147,12 @@ class Bench:
 
     def beside(self, face: FreeformPatch) -> Standard:
         """The best 13 balls that stand beside a face."""
-        ring = ball_places(self.criterion.plain, self.brief.blank, self.possible, self.rng, [face])
-        made = balls_beside([face], 13, ring, self.touches)
+        plain, blank = self.criterion.plain, self.brief.blank
+        try:
+            ring = ball_places(plain, blank, self.possible, self.rng, [face])
+            made = balls_beside([face], 13, ring, self.touches)
+        except NotReachable:
+            made = None
         if made is None:
             raise SystemExit(f"13 balls do not fit beside a face of {2 * face.half_size[0]:g} mm")
         return made

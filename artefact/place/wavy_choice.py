@@ -93,18 +93,17 @@ def wavy_choice(
     while first < last:
         middle = (first + last) // 2
         face = wavy_face("FF1", places.blank, replace(wave, half_size=sizes[middle]))
-        ring = ball_places(criterion.plain, places.blank, all_poses, rng, [face])
-        made = balls_beside([face], options.balls, ring, options.choice.touches)
         cost = np.inf
-        if made is not None:
-            made = replace(made, name=options.name, serial=options.serial)
-            try:
+        try:
+            ring = ball_places(criterion.plain, places.blank, all_poses, rng, [face])
+            made = balls_beside([face], options.balls, ring, options.choice.touches)
+            if made is not None:
+                made = replace(made, name=options.name, serial=options.serial)
                 found = _identifying(criterion, made, all_poses, options)
-            except NotReachable as error:
-                refused = str(error)
-            else:
                 left = left_unknown(criterion, made, found.tried[found.chosen])
                 cost = rms(left) / best_balls if np.isfinite(best_balls) else 1.0
+        except NotReachable as error:
+            refused = str(error)
         if cost <= most or cost < least:
             best, least = found, cost
         first, last = (first, middle) if cost <= most else (middle + 1, last)

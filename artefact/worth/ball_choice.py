@@ -67,12 +67,14 @@ def ball_places(
         beside: Faces beside which they leave room for cutter and probe.
 
     Raises:
-        NotReachable: The machine reaches no touch on any of them.
+        NotReachable: The faces leave room for none, or the machine reaches no touch on any.
     """
     balls = balls_on_posts(blank, _PLACES * (_OVERDRAW if beside else 1), rng)
     if beside:
         free = [ball for ball in balls if faces_beside(beside, [ball], blank).all()]
         balls = [replace(ball, name=f"{i}") for i, ball in enumerate(free[:_PLACES])]
+    if not balls:
+        raise NotReachable("no ball has room beside the faces")
     some, grid = spread_poses(poses, _POSES), sphere_grid(_DIRECTIONS)
     wanted = joined([each_at(ball, grid, some) for ball in balls])
     wanted = wanted[criterion.reach.is_reachable(wanted)]

@@ -6,6 +6,7 @@ from itertools import pairwise
 import numpy as np
 
 from matstd.information.criteria import DesignCriterion, Tangent
+from matstd.information.selection.touch_selection import level
 from matstd.twin.compute import blocks
 from matstd.twin.frames import Array, IntArray, Mask
 
@@ -97,12 +98,12 @@ class _Groups:
                 mine = np.matmul(W[some], inverse, out=reach[some])
                 leverage = np.einsum("nr,nr->n", mine, W[some])
                 gain[some] += tangent.fall(tangent.numerators(mine, leverage), leverage)
-        top = self._most_useful(edges, gain)
+        top = self._most_useful(edges, level(gain, gain.max()))
         fall = np.zeros(len(top))
         for reach, tangent in zip(reaches, tangents, strict=True):
             for some in blocks(len(top), _GROUPS_A_BLOCK):
                 fall[some] += self._falls(W, top[some], reach, tangent)
-        i = int(np.argmax(fall))
+        i = int(np.argmax(level(fall, fall.max())))
         rows = W[top[i][top[i] >= 0]]
         best = int(np.flatnonzero(free)[i])
         self.brought[best] = rows.T @ rows

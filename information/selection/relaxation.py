@@ -19,7 +19,7 @@ from scipy.linalg import block_diag
 
 from matstd.information.criteria import DesignCriterion, Tangent
 from matstd.information.selection.shares import cells, keeps, largest_sum, rank_in_cell
-from matstd.information.selection.touch_selection import Quota
+from matstd.information.selection.touch_selection import Quota, level
 from matstd.twin.errors import DesignError
 from matstd.twin.frames import Array, IntArray, Mask
 
@@ -64,10 +64,12 @@ _STEPS_CURVED = 40  # the same along one tangent of a criterion that is curved
 _ROUNDS = 100  # looks at all candidates, at most
 _PAIRS = 8  # exchanges found by the same gains
 _REFRESH = 200
+_DIGITS_LEFT = 1e-3  # of the largest gain: below it updates have lost as many digits
 _HALVINGS = 8
 _PATIENCE = 3  # looks without progress before the mean is sharpened, or the search given up
 _SHARPEST = 1000.0
 _MIN_FLOW = 1e-12
+_MIN_WEIGHT = 1e-9  # of a touch that counts; below it a weight is rounding
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,7 +135,7 @@ def relaxed(
             if criterion.measure.sharpness > _SHARPEST:
                 break
             criterion, stalled = criterion.sharper(2.0), 0
-        few = _candidates_to_search(gain, there, count, cell)
+        few = _candidates_to_search(level(gain, gain.max()), there, count, cell)
         # the same quotas over some rows, among which all weight is
         own = tuple(Quota(q.kind[few], q.most, q.least) for q in quotas)
         after, made = _exchanged(criterion, W[few], x[few], own)
@@ -227,19 +229,21 @@ def _exchanged(
     Pairs of different rows are found by the same gains, a few at a time; each flow is the best one
     after those before it, and all gains are then updated together.
     """
-    x, made, due = x.copy(), 0, 0
+    x, gain, made, due, largest = x.copy(), np.zeros(len(x)), 0, 0, np.inf
     board = _Board(quotas, len(x))
     tangents = criterion.tangents((W * x[:, None]).T @ W)
     most_steps = _STEPS_CURVED if criterion.is_curved else _STEPS
     while made < most_steps:
-        if made >= due:
+        if made >= due or gain[x < 1.0].max(initial=0.0) < _DIGITS_LEFT * largest:
             here = slope(criterion, (W * x[:, None]).T @ W)
             inverse, gain, due = here.inverse.copy(), here.gains(W), made + _REFRESH
-        up, down = np.where(x < 1.0, gain, -np.inf), np.where(x > 0.0, gain, np.inf)
+            largest = gain[x < 1.0].max(initial=0.0)
+        even = level(gain, gain[x < 1.0].max(initial=0.0))
+        up, down = np.where(x < 1.0, even, -np.inf), np.where(x > 0.0, even, np.inf)
         before, reaches, inners = inverse.copy(), list[Array](), list[np.ndarray]()
         for _ in range(_PAIRS):
             i, j, room = board.best(up, down, x)
-            if not up[i] > down[j] * (1.0 + 1e-9):
+            if not up[i] > down[j]:
                 break
             up[[i, j]], down[[i, j]] = -np.inf, np.inf
             pair = W[[i, j]]
@@ -247,8 +251,7 @@ def _exchanged(
             h = pair @ reach
             k = np.stack([t.pair(r) for t, r in zip(tangents, reach, strict=True)])
             flow = _best_flow(tangents, h, k, min(1.0 - x[i], x[j], room))
-            x[i] = 1.0 if flow == 1.0 - x[i] else x[i] + flow
-            x[j] = 0.0 if flow == x[j] else x[j] - flow
+            x[i], x[j] = _snapped(x[i] + flow), _snapped(x[j] - flow)
             turned = np.linalg.solve(np.diag([1.0 / flow, -1.0 / flow]) + h, np.eye(2)[None])
             for s, one in enumerate(reach):
                 inverse[s] -= one @ turned[s] @ one.T
@@ -262,6 +265,12 @@ def _exchanged(
             inner = block_diag(*(turned[s] for turned in inners))
             gain = gain + tangent.after_flow(W, before[s], together[s], inner)
     return x, made
+
+
+def _snapped(weight: float) -> float:
+    """A weight, 0 or 1 where it is so but for rounding, which must not decide what may flow."""
+    nearest = round(weight)
+    return nearest if abs(weight - nearest) < _MIN_WEIGHT else weight
 
 
 def _best_flow(tangents: Sequence[Tangent], h: Array, k: Array, most: float) -> float:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import csr_array, vstack
 
-from matstd.information.selection.touch_selection import Quota
+from matstd.information.selection.touch_selection import Quota, level
 from matstd.twin.errors import DesignError
 from matstd.twin.frames import Array, IntArray, Mask
 
@@ -94,6 +94,7 @@ def _constraints(quotas: tuple[Quota, ...], rows: IntArray) -> tuple[csr_array, 
 def heaviest(weight: Array, count: int, quotas: tuple[Quota, ...] = ()) -> Mask:
     """The `count` rows of the largest weights that keep the shares, (N,); raises DesignError."""
     chosen = np.zeros(len(weight), dtype=bool)
+    weight = level(weight, weight.max(initial=0.0))
     if quotas:
         # the corners of the shares of poses and kinds are whole numbers; a tiny unevenness keeps
         # ties from leaving halves

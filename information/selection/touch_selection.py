@@ -20,6 +20,7 @@ from matstd.twin.frames import Array, IntArray, Mask
 
 _REFRESH = 40  # updates after which rounding is swept out
 _MIN_RELATIVE_GAIN = 1e-6  # relative gain below which an exchange is not made
+_EQUAL = 1e-8  # relative difference below which rows are worth the same
 _PATIENCE = 8  # chosen rows, the least useful first, that are tried before an exchange is given up
 _ROWS_PER_TANGENT = 20  # rows chosen greedily along one tangent of a criterion that is curved
 _SHARPNESS_FACTORS = (1.0, 4.0, 16.0)  # power means that stand for the largest, one after another
@@ -145,6 +146,16 @@ class Quota:
         if self.least is not None:
             lacks = self.count(chosen) < self.least
         return lacks[self.kind] if lacks.any() else np.ones(len(self.kind), dtype=bool)
+
+
+def level(values: Array, scale: float) -> Array:
+    """Values to eight digits of a scale: the first of equals is then the same on any processor.
+
+    Linear algebra rounds the last digit differently from one kind of processor to another, and rows
+    that symmetry makes equal would be chosen by that digit.
+    """
+    unit = _EQUAL * scale if np.isfinite(scale) and scale else 1.0
+    return np.asarray(np.round(values / unit) * unit)
 
 
 def _open(quotas: tuple[Quota, ...], chosen: Mask) -> Mask:

@@ -12,7 +12,8 @@ from matstd.artefact.hidden.scan_path import scan_path
 from matstd.artefact.layout import Blank, Wave, holes_on, wavy_face, with_spheres
 from matstd.artefact.place import Family, FamilyFigures
 from matstd.artefact.place.family import chosen_family, flat_pads
-from matstd.twin.errors import NotBuildable
+from matstd.artefact.worth import ball_places
+from matstd.twin.errors import NotBuildable, NotReachable
 from matstd.twin.units import DEG, UM
 
 BLANK = Blank()
@@ -192,3 +193,10 @@ def test_waves_that_a_cutter_leaves_flat_are_refused():
     limits = replace(BLANK.limits, min_concave_radius=400.0)
     with pytest.raises(NotBuildable, match=r"radius of 412 mm rise by \d degrees, expected 15"):
         wavy_face("FF1", replace(BLANK, limits=limits), WAVE)
+
+
+def test_a_face_that_leaves_room_for_no_ball_is_refused(criterion):
+    blank = replace(BLANK, base=Base((100.0, 100.0)))
+    face = wavy_face("FF1", blank, replace(WAVE, half_size=(98.0, 98.0)))
+    with pytest.raises(NotReachable, match="no ball has room beside the faces"):
+        ball_places(criterion, blank, AT_ZERO, np.random.default_rng(0), [face])

@@ -7,7 +7,15 @@ import pytest
 
 from matstd.information.criteria import DesignCriterion, mean_prediction
 from matstd.information.criteria.measures import MeanVariance
-from matstd.information.selection import Quota, Selection, best_groups, exchange, fill
+from matstd.information.selection import (
+    Quota,
+    Selection,
+    best_groups,
+    exchange,
+    fill,
+    heaviest,
+    relaxed,
+)
 from matstd.twin.errors import DesignError
 
 ROUNDING = 1e-9
@@ -171,3 +179,22 @@ def test_groups_to_begin_with_are_exchanged_like_the_others(case):
     assert set(begun) == {3, 4, 5, 6}
     free = best_groups(criterion, W, group, 3, take=6)
     assert set(best_groups(criterion, W, group, 3, take=6, begin=free)) == set(free)
+
+
+@pytest.mark.parametrize("seed", [0, 3, 5, 7])
+def test_the_last_digit_of_rows_decides_nothing(seed):
+    """Mirrored rows are worth the same; another processor rounds each of them differently."""
+    rng = np.random.default_rng(seed)
+    half = rng.normal(size=(90, 5)) * np.array([60.0, 20.0, 5.0, 1.0, 0.3])
+    mirrored = half * np.array([1, 1, 1, 1, -1]), half[::-1] * np.array([1, 1, 1, -1, 1])
+    W = np.concatenate([half, *mirrored])
+    criterion = DesignCriterion(np.eye(5), MeanVariance(np.diag([1.0, 2.0, 3.0, 4.0, 5.0])))
+    shares = (Quota(np.arange(len(W)) % 6, np.full(6, 9)),)
+    chosen = []
+    for rounding in (0.0, 3e-16):
+        rows = W * (1.0 + rounding * np.random.default_rng(99).uniform(-1.0, 1.0, W.shape))
+        start = heaviest(np.linalg.norm(rows, axis=1), 40, shares)
+        found = relaxed(criterion, rows, 40, start, 1e-4, shares)
+        groups = best_groups(criterion, rows, np.arange(len(W)) // 9, count=8, take=4)
+        chosen.append([*np.flatnonzero(heaviest(found.weight, 40, shares)), *groups])
+    assert chosen[0] == chosen[1]
