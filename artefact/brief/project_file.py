@@ -122,8 +122,7 @@ class ProjectTable(Table):
     machine: str = Field(examples=["machine.toml"])
     """path of the machine file, relative to this file"""
     seed: int = Field(ge=0, examples=[1])
-    """seed of all random numbers; the same seed gives the same standard on one kind of processor.
-    Another kind rounds the last digit differently, and of touches of equal worth takes others"""
+    """seed of all random numbers; the same seed gives the same poses, features and touches"""
     confirmed: list[str] = Field(default_factory=list, examples=[["probe.length_mm"]])
     """keys of this file whose values look like a mistake and are meant, such as a probe of 30 mm;
     they are not asked about"""
