@@ -42,7 +42,7 @@ VALUES = (
     [[1.0]], [True, 2.0], {}, {"a": 1}, [{}], float("nan"), float("inf"), 10**30, "12", [3.0, 1.0],
     [0.0, 0.0], "a\nb", -0.0, 1e-9, [1, "x"], [[1.0, 2.0], [3.0]],
 )  # fmt: skip
-"""What may stand in the place of a value."""
+"""What may stand in place of a value."""
 
 
 def toml(data: dict[str, Any]) -> str:

@@ -100,7 +100,7 @@ def _left(v: Array) -> Array:
 
 
 def resolved(items: Sequence[Item], reading: Reading, is_square: bool) -> list[Item]:
-    """Items with the paths of the tool's centre in the place of those beside a contour.
+    """Items with the paths of the tool's centre in place of those beside a contour.
 
     Args:
         is_square: Whether the tool comes to the contour square to its first element, as with

@@ -169,7 +169,7 @@ class Diagnosis(Tabular):
         """The same with laws of what remains.
 
         Where the laws stand in the model, the errors to expect and the geometry are those with
-        them: in an unexplained run, and in the place of names. What a law explains, the geometry
+        them: in an unexplained run, and in place of names. What a law explains, the geometry
         imitates without it: straightness of an axis along which the run drifted. Names that they
         explain better are withdrawn: none of them stands in a headline, and no plan distinguishes
         a name withdrawn from its rivals.

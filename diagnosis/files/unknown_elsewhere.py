@@ -18,7 +18,7 @@ from matstd.twin.record import Run, with_commanded
 def unknown_elsewhere(
     model: Model, theta: Array, left_out: Sequence[EffectOfOtherRun]
 ) -> tuple[Effect, ...]:
-    """In the place of laws of another run: zero, as unsure as they are large.
+    """In place of laws of another run: zero, as unsure as they are large.
 
     Args:
         model: With the effects that are left out.

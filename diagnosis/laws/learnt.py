@@ -44,7 +44,7 @@ class LearntLaw:
     rivals: tuple[Rival, ...]
     # the effect of the library that explains most of the same; None without any
     library: LibraryEffect | None = None
-    memory: float = -np.inf  # log evidence of noise that remembers in the place of the law
+    memory: float = -np.inf  # log evidence of noise that remembers in place of the law
     elsewhere: tuple[Carrier, ...] = ()  # of those alike, each kind that differs in other poses
 
     @property

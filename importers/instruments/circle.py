@@ -46,7 +46,7 @@ class CircularTest:
     radius: float  # nominal, mm
     angle: Array  # (N,), rad
     deviation: Array  # actual minus nominal radius, (N,), mm
-    sense: IntArray  # 1 from the first axis to the second, -1 the other way round, (N,)
+    sense: IntArray  # 1 from the first axis to the second, -1 back, (N,)
     run: Labels  # name of the run, (N,)
     line: IntArray  # line of the file, (N,)
 

@@ -129,7 +129,7 @@ def planned_again(
 
     Args:
         ball: On the table, by which the probe is watched; programs state it as cylinders.
-        visit: Touches that are made in the place of theirs, in its order.
+        visit: Touches that are made in place of theirs, in its order.
 
     Raises:
         NotReachable: More touches cannot be made there than may be dropped.

@@ -37,7 +37,7 @@ class Table:
     rows: Sequence[Sequence[str]]  # cells; a line break in a cell is one on the page
     caption: str = ""  # above the table
     best: Collection[int] = ()  # indices of rows in bold
-    is_file: bool = False  # whether the page has a link to its file in the place of its rows
+    is_file: bool = False  # whether the page has a link to its file in place of its rows
 
     @classmethod
     def of(

@@ -189,7 +189,7 @@ def test_sparse_directions_are_found_again():
     W = rng.normal(size=(40, 12)) @ (np.eye(12) - np.linalg.pinv(planted) @ planted)
     got = sparse(rank_analysis(W).null)
     found = sorted(np.flatnonzero(z).tolist() for _, z in got)
-    # 1 in the place of 4 makes a triple as small
+    # 1 in place of 4 makes a triple as small
     assert found in ([[1, 4], [4, 6, 9], [11]], [[1, 4], [1, 6, 9], [11]])
     pair = next(z for _, z in got if np.count_nonzero(z) == 2)
     assert pair[4] / pair[1] == pytest.approx(-2.0, rel=1e-6)

@@ -162,7 +162,7 @@ def test_a_box_says_what_a_result_means_and_what_to_do(tmp_path: Path) -> None:
 
 
 def test_a_table_may_be_a_file_alone(tmp_path: Path) -> None:
-    """The page has a link in the place of its rows; the file has all of them."""
+    """The page has a link in place of its rows; the file has all of them."""
     table = Table(("pair",), [["EXX, EYY"]], "All pairs", is_file=True)
     write_page(
         tmp_path / "report.html", page_of(Section("Lists", table=LEFT), Section(table=table))

@@ -263,7 +263,7 @@ def _faults(
 
 
 def _whole_table(model: type[BaseModel], name: str) -> str:
-    """What is expected where something else stands in the place of a table."""
+    """What is expected where something else stands in place of a table."""
     needed = [f for f in model.model_fields if model.model_fields[f].is_required()]
     keys = keys_of(model)
     lines = [f"{key} = {keys[key].example}" for key in needed if keys[key].example]

@@ -219,6 +219,6 @@ def _kind(stated: object) -> str:
 
 
 def _other_kind(path: str | Path, kind: str, wanted: str) -> BadFile:
-    """A file of ours that was given in the place of another."""
+    """A file of ours that was given in place of another."""
     name, more = _KINDS[_kind(wanted)]
     return BadFile(path, "format", _KINDS[kind][0], f'{name}, "{wanted}"{more}')

@@ -73,7 +73,7 @@ def register(kind: Kind) -> Kind:
 
 
 def _register_from(kind: Kind, path: Path) -> Kind:
-    """Register a kind of a user's file, in the place of its former version; raises BadFile."""
+    """Register a kind of a user's file, in place of its former version; raises BadFile."""
     place = path.resolve()
     if _FILES.get(kind.word) == place:
         del _REGISTER[kind.word]

@@ -112,8 +112,8 @@ def circle(args: argparse.Namespace, sheet: Sheet) -> tuple[Run, Chain]:
     test = read_circle(sheet, plane, args.radius, args.unit)
     for run in dict.fromkeys(test.run):
         rows = test.run == run
-        way = "from the first axis to the second" if test.sense[rows][0] > 0 else "the other way"
-        say(f"- {run}: {int(rows.sum())} readings, {way}")
+        way = "first axis to the second" if test.sense[rows][0] > 0 else "second axis to the first"
+        say(f"- {run}: {int(rows.sum())} readings, from the {way}")
     if args.feed is None:
         say("- without --feed no speeds are known: a servo lag cannot be found")
     if words := [_circle_words(one) for one in circle_parameters(test)]:
