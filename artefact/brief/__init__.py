@@ -8,7 +8,6 @@ of the `Brief`, and a check beside it if it can contradict another.
 from matstd.artefact.brief.brief import Brief as Brief
 from matstd.artefact.brief.brief import Goal as Goal
 from matstd.artefact.brief.brief import PlacementOptions as PlacementOptions
-from matstd.artefact.brief.brief import ProgramSettings as ProgramSettings
 from matstd.artefact.brief.brief import StudySettings as StudySettings
 from matstd.artefact.brief.project_file import project_text as project_text
 from matstd.artefact.brief.project_file import read_project as read_project

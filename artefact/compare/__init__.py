@@ -5,7 +5,6 @@ touches can and cannot determine (`IdentifiabilityReport`), with what would reso
 """
 
 from matstd.artefact.compare.alternatives import Alternative as Alternative
-from matstd.artefact.compare.comparison import Compared as Compared
 from matstd.artefact.compare.comparison import Rival as Rival
 from matstd.artefact.compare.comparison import compared as compared
 from matstd.artefact.compare.comparison import evaluate_rival as evaluate_rival

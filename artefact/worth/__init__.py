@@ -12,7 +12,6 @@ from matstd.artefact.worth.ball_choice import ball_places as ball_places
 from matstd.artefact.worth.calibration import Calibration as Calibration
 from matstd.artefact.worth.effect_visibility import Visibility as Visibility
 from matstd.artefact.worth.effect_visibility import visibility as visibility
-from matstd.artefact.worth.touch_choice import Surfaces as Surfaces
 from matstd.artefact.worth.touch_choice import TouchOptions as TouchOptions
 from matstd.artefact.worth.touch_choice import chosen_poses as chosen_poses
 from matstd.artefact.worth.touch_choice import chosen_touches_on as chosen_touches_on

@@ -5,5 +5,4 @@ In: a standard and the folder of its files. Out: a `Conformity` with every figur
 """
 
 from matstd.cad_out.verify.conformity import Conformity as Conformity
-from matstd.cad_out.verify.conformity import measure as measure
 from matstd.cad_out.verify.export import export_standard as export_standard

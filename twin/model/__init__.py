@@ -15,7 +15,6 @@ from matstd.twin.model.declared import scanned as scanned
 from matstd.twin.model.effect import Effect as Effect
 from matstd.twin.model.effect import Inner as Inner
 from matstd.twin.model.effect import Parameter as Parameter
-from matstd.twin.model.effect import Saved as Saved
 from matstd.twin.model.effect import Term as Term
 from matstd.twin.model.effect import Title as Title
 from matstd.twin.model.effect import Tunable as Tunable
