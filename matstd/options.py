@@ -157,11 +157,7 @@ def seen_from(folder: Path, file: str | Path) -> str:
 
 
 def asked_printer(pdf: bool) -> Printer | None:
-    """What prints a page, looked for before the work begins; None where no PDF is wanted.
-
-    Raises:
-        MissingLibrary: It is wanted, and nothing here can print.
-    """
+    """What prints a page, None where no PDF is wanted; raises MissingLibrary for nothing."""
     if not pdf:
         return None
     from matstd.report.pages import printer
@@ -178,11 +174,7 @@ def print_report(folder: Path, printed_by: Printer | None, name: str = "report")
 
 
 def starting_model(args: argparse.Namespace) -> str:
-    """The starting model: a word, or the path of a model file.
-
-    Raises:
-        DesignError: A model by both options, or a word that is none of theirs.
-    """
+    """The starting model, a word or the path of a model file; raises DesignError for both."""
     start: str | None = args.start
     if start is None or (start == GEOMETRY and args.model is not None):
         return args.model or GEOMETRY

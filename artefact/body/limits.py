@@ -78,11 +78,7 @@ def constraints(standard: Standard, limits: Limits) -> tuple[Constraint, ...]:
 
 
 def check(standard: Standard, limits: Limits) -> None:
-    """Reject a standard that cannot be made or probed.
-
-    Raises:
-        NotBuildable: Names the constraint that binds most, and how many more are violated.
-    """
+    """Raise NotBuildable, with the constraint that binds most, for what cannot be made."""
     violated = [c for c in constraints(standard, limits) if c.slack < 0.0]
     violated.sort(key=lambda c: c.slack / max(abs(c.limit), 1e-9))
     if violated:

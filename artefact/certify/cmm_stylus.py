@@ -57,11 +57,7 @@ ANGLES = (UPRIGHT, *(Angle(a, b) for a in _TILTS[1:] for b in _TURNS))
 
 
 def reaches(standard: Standard, centres: Array, high: float, length: float, angle: Angle) -> Mask:
-    """Whether the probe is free at ball centres (N, 3) and straight above them, (N,).
-
-    Args:
-        high: Of the clearance plane, mm.
-    """
+    """Whether the probe is free at ball centres (N, 3), and above them up to `high` mm, (N,)."""
     # upright, what is free below is free above: the probe moves along its own axis
     count = 1 if angle == UPRIGHT else _HEIGHTS
     steps = np.linspace(0.0, 1.0, count)[:, None, None]

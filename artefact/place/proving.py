@@ -51,11 +51,7 @@ def proving_touches(
 def informative_touches(
     criterion: Criterion, tried: Requests, identifying: Requests, count: int
 ) -> Requests:
-    """Most informative touches beside the ones that identify.
-
-    Raises:
-        NotReachable: Fewer can be made.
-    """
+    """Most informative touches beside those that identify; raises NotReachable for fewer."""
     _check_enough(tried, count)
     selection, given = _selection_after(criterion, tried, identifying)
     fill(selection, given + count)

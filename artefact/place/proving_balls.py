@@ -54,11 +54,7 @@ def balls_alone(
 def proving_on_balls(
     criterion: Criterion, standard: Standard, poses: Array, count: int
 ) -> Requests:
-    """Possible touches on the balls that prove, at some table poses.
-
-    Raises:
-        NotReachable: Fewer than `count` can be made.
-    """
+    """Possible touches on the balls that prove; raises NotReachable for fewer than `count`."""
     balls = tuple(ball for ball in standard.spheres if ball.proves)
     wanted = CANDIDATES_PER_TOUCH * count
     tried = touches_to_choose_from(criterion.reach, standard, balls, poses, wanted)

@@ -37,11 +37,7 @@ class DatumBall:
     u: float = 0.0  # standard uncertainty of the radius, mm
 
     def sphere(self, T_table_artefact: Array) -> DatumSphere:
-        """The ball as a feature of a standard that stands somewhere.
-
-        Raises:
-            DesignError: A standard that does not stand upright: stems of its balls do.
-        """
+        """The ball as a feature of a standard; raises DesignError for one that is not upright."""
         T_artefact_face = inverse(T_table_artefact) @ table_face(T_table_artefact)
         if T_artefact_face[2, 2] < 1.0 - _UPRIGHT:
             raise DesignError("a datum ball beside a standard that is tilted: expected it upright")

@@ -41,11 +41,7 @@ class Details:
 
 
 def details_of(standard: Standard) -> Details:
-    """The details of a standard, the same for the same standard.
-
-    Raises:
-        NotBuildable: A post is too thin for the seat of its ball.
-    """
+    """The details of a standard; raises NotBuildable for a post too thin for its ball."""
     sides, bores, lettering, missing = _added(standard)
     return Details(
         seats={sphere.name: seat_of(sphere) for sphere in standard.spheres},

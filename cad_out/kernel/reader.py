@@ -84,11 +84,7 @@ class Reread:
 
 
 def read_shape(path: Path) -> Any:
-    """Everything that a STEP file of another program draws, as one shape, mm.
-
-    Raises:
-        NotBuildable: A file that the kernel cannot read, or without a face.
-    """
+    """All that a foreign STEP file draws, as one shape, mm; raises NotBuildable for nothing."""
     reader = STEPControl_Reader()
     if reader.ReadFile(str(path)) != IFSelect_ReturnStatus.IFSelect_RetDone:
         raise NotBuildable("the CAD kernel cannot read it")

@@ -102,11 +102,7 @@ def _names(lines: Sequence[Array]) -> list[str]:
 
 
 def _travels(sheet: Sheet, readings: Array) -> list[tuple[float, float]]:
-    """Travel of every joint, rad.
-
-    Raises:
-        BadFile: One limit without the other, limits in the wrong order, readings beyond them.
-    """
+    """Travel of every joint, rad; raises BadFile for one limit alone, or readings beyond them."""
     low, high = (sheet.find(_LIMITS[end]) for end in ("min", "max"))
     if low is None and high is None:
         # another log of the same arm has other poses: those of one are no limits

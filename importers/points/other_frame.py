@@ -46,11 +46,7 @@ class OtherFrame:
 
 
 def measured_frames(points: PointList) -> list[OtherFrame]:
-    """Frames in which the set-ups were measured, for those with enough points to determine it.
-
-    Raises:
-        DesignError: Points that fit a mirrored frame alone.
-    """
+    """Frames of set-ups whose points determine them; raises DesignError for a mirrored one."""
     out = []
     for setup in dict.fromkeys(points.setup.tolist()):
         rows = points.setup == setup

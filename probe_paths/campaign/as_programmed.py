@@ -29,11 +29,7 @@ SAME_ANGLE = 0.05
 
 
 def check_numbers(parts: Sequence[LogPart]) -> None:
-    """Refuse logs with a stopped clock or rounded positions, and logs of different campaigns.
-
-    Raises:
-        BadFile: File and line, what stood there, what was expected.
-    """
+    """Raise BadFile for a stopped clock, rounded positions, or logs of different campaigns."""
     dated = sorted((p for p in parts if p.begin.year != UNDATED.year), key=lambda p: p.begin)
     if dated and dated[-1].begin - dated[0].begin > LONGEST_CAMPAIGN:
         first, last = dated[0], dated[-1]

@@ -23,11 +23,7 @@ def language_of(path: str | Path) -> Language:
 
 
 def read_blocks(data: bytes, path: str | Path, dialect: Dialect | None = None) -> list[Block]:
-    """Blocks of a program file in the language of its name.
-
-    Raises:
-        BadFile: Whatever is not in the closed list of the language, or not a whole text.
-    """
+    """Blocks of a program file in the language of its name; raises BadFile for any other."""
     if language_of(path) is GCODE:
         return read_gcode(data, path)
     return read_klartext(data, path, dialect or Dialect())

@@ -24,11 +24,7 @@ def checked_name(name: str) -> str:
 
 
 def signed(value: float, decimals: int = 4) -> str:
-    """A number as the control wants it: sign, point, fixed decimals; never a negative zero.
-
-    Raises:
-        DesignError: A value beyond the input range of the control, or none at all.
-    """
+    """Sign, point and fixed decimals, never a negative zero; raises DesignError out of range."""
     if not abs(value) <= MAX_VALUE:
         raise DesignError(f"coordinate {value} is beyond the control's range of {MAX_VALUE}")
     rounded = round(value, decimals) + 0.0

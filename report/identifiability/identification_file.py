@@ -17,11 +17,7 @@ FORMAT = "identification/1"
 def identification_table(
     fit: Fit, known: Estimable, proofs: Sequence[Proof] = ()
 ) -> dict[str, Any]:
-    """Everything of `identification.json` in the units that stand in its names.
-
-    Args:
-        proofs: Comparison with simulated machines whose truth is known, if any.
-    """
+    """All of `identification.json`, with proofs on simulated machines if there are any."""
     units = [parameter.unit for _, parameter in fit.parameters]
     out: dict[str, Any] = {
         "format": FORMAT,

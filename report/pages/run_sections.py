@@ -83,11 +83,7 @@ def on_standard(touches: Touches, *fits: tuple[str, Fit]) -> list[Picture]:
 def pattern_pictures(
     fit: Fit, found: Sequence[Structure], rng: np.random.Generator
 ) -> list[Picture]:
-    """What a residual varies with, each beside the same residual shuffled.
-
-    Args:
-        found: Patterns in its residual, the most certain first.
-    """
+    """Patterns of a residual, the most certain first, each beside the residual shuffled."""
     out: list[Picture] = []
     seen: set[tuple[tuple[str, ...], float]] = set()
     for k, one in enumerate(found):

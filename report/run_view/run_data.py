@@ -46,11 +46,7 @@ class Findings:
 def run_data(
     board: Board, findings: Findings, curves: Mapping[str, Sequence[LawCurve]] | None = None
 ) -> TREE:
-    """Data of `run_page.js`.
-
-    Args:
-        curves: Of laws among the switches, by their names, one for every variable.
-    """
+    """Data of `run_page.js`; `curves` are those of laws by name, one for every variable."""
     fit = board.fit
     alone = None if findings.set_up_alone is None else findings.set_up_alone / UM
     return {

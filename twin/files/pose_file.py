@@ -24,11 +24,7 @@ def reading_columns(chain: Chain) -> dict[str, tuple[str, float]]:
 
 
 def readings(table: CsvTable, chain: Chain) -> Array:
-    """Readings (N, A) of a table; a spindle that is not programmed may be left out (zero).
-
-    Raises:
-        BadFile: A column missing, or a cell that is no number.
-    """
+    """Readings (N, A), zero of a spindle that is left out; raises BadFile."""
     names = reading_columns(chain)
     table.require(names[axis][0] for axis in chain.programmed_axes)
     q = np.zeros((len(table), len(chain.axes)))

@@ -53,11 +53,7 @@ _OTHER_UNITS = {
 
 
 def checked_run(run: Run, table: CsvTable, remarks: list[str]) -> Run:
-    """The run without rows that cannot be measurements; what is left out is reported.
-
-    Raises:
-        BadFile: A fault in too many rows to be one of single rows.
-    """
+    """The run without impossible rows, which are reported; raises BadFile for too many."""
     run = without_copies(replace(run, remarks=tuple(remarks)))
     remarks[:] = run.remarks
     run = _without_slips(run, table, remarks)

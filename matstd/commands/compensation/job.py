@@ -16,11 +16,7 @@ _SUCH_AS = "a name and a number, such as X=100"
 
 
 def read_job(args: argparse.Namespace) -> Compensation:
-    """Everything that the command line says of machine, state and datum.
-
-    Raises:
-        DesignError: A file or an option that cannot be read, or an active table.
-    """
+    """What the command line says of machine, state and datum; raises DesignError."""
     register_effects(*args.effects)
     machine = compensate(
         args.model,
