@@ -69,12 +69,7 @@ def evaluate_rival(
     available: int,
     body: Standard | None = None,
 ) -> Rival:
-    """Figures of one artefact after its touches.
-
-    Args:
-        random: Lots of random touches on it, of equal number.
-        body: The artefact; None for ideal scatter.
-    """
+    """Figures of an artefact after its touches and random ones; no body is ideal scatter."""
     after, rows = _posterior(criterion, chosen), criterion.rows(chosen)
     over = after.predicted_sd(criterion.tip_volume)
     of_user = after.predicted_sd(criterion.tip_user)

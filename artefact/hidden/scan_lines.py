@@ -70,12 +70,7 @@ def can_be_scanned(wanted: Requests, reach: ProbeReach, standard: Standard) -> M
 def scanned(
     face: FreeformPatch, scan: Scan, poses: Array, reach: ProbeReach, standard: Standard
 ) -> Measurement:
-    """Means of the stretches of a scan that machine and probe can make, at some table poses.
-
-    Args:
-        poses: Table poses at which the face is scanned, (K, R), rad.
-        standard: With the face, and what stands beside it.
-    """
+    """Means of the stretches of a scan that can be made at table poses (K, R), rad."""
     a, b = (half - EDGE for half in face.half_size)
     # as many means a length across the lines as along them: neighbours of several lines are one too
     across = max(1, round(_STRETCH / scan.between))

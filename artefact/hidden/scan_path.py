@@ -21,12 +21,7 @@ from matstd.twin.units import DEG
 def scan_path(
     face: FreeformPatch, scan: Scan, poses: Array, reach: ProbeReach, standard: Standard
 ) -> tuple[Requests, IntArray]:
-    """Points of the lines in their order, and the number of the line of each, from 1.
-
-    Args:
-        poses: Table poses at which the face is scanned, (K, R), rad.
-        standard: With the face, and what stands beside it.
-    """
+    """Points of the lines at table poses (K, R), rad, in order, and the line of each, from 1."""
     a, b = (half - EDGE for half in face.half_size)
     across = np.linspace(-a, a, int(2.0 * a // scan.between) + 1)
     along = np.linspace(-b, b, int(2.0 * b // scan.pitch) + 1)

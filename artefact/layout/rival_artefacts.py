@@ -18,12 +18,7 @@ _COLUMN_END = 5.0  # mm above mid-base, where columns end
 
 
 def rivals(volume: Box, blank: Blank, rng: np.random.Generator) -> dict[str, Standard]:
-    """A five-sided block and one freeform face in the volume of the standard, on the same base.
-
-    Args:
-        volume: Box of the artefact frame, mm.
-        rng: Draws the shape of the freeform face.
-    """
+    """A five-sided block and one random freeform face in a volume (mm), on the same base."""
     return {
         "five-sided block": _standard("BLOCK", blank, _block(volume, blank)),
         "one freeform face": _standard("FACE", blank, (_one_face(volume, blank, rng),)),

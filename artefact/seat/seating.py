@@ -43,12 +43,7 @@ def base_corners(base: Base, T_table_artefact: Array) -> Array:
 
 
 def seat_height(T_table_artefact: Array, half_size: tuple[float, float]) -> float:
-    """Height of the lowest corner of a base above the origin of the table's face, mm.
-
-    Args:
-        T_table_artefact: Where the standard stands, shape (4, 4).
-        half_size: Half sides of its base, mm.
-    """
+    """Height of the lowest corner of a base above the origin of the table's face, mm."""
     a, b = half_size
     corners = np.array([[x, y, 0.0] for x in (-a, a) for y in (-b, b)])
     on_face = apply(inverse(table_face(T_table_artefact)), apply(T_table_artefact, corners))

@@ -38,12 +38,7 @@ class BallPlaces:
     fits: Mask  # which of them stand beside each other, (B, B)
 
     def best(self, count: int, touches: int, clear: Mask | None = None) -> list[DatumSphere]:
-        """The balls whose touches together say most, the first the most; fewer without room.
-
-        Args:
-            count: Of balls, at most.
-            clear: Touches that nothing stands in the way of, (N,); None for all.
-        """
+        """At most `count` balls whose clear touches together say most, the first the most."""
         rows = slice(None) if clear is None else clear
         take = max(4, touches // count)
         chosen = best_groups(

@@ -119,12 +119,7 @@ def _pieces(standard: Standard, products: Sequence[Product], mesh: Mesh) -> list
 
 
 def mesh_step(folder: str, chord: float) -> None:
-    """Triangles of all bodies of a STEP file that a user drew.
-
-    Args:
-        folder: Holds the file; takes the triangles.
-        chord: Largest distance of the mesh from the faces that is asked for, mm.
-    """
+    """Triangles of all bodies of a STEP file in a folder, `chord` (mm) from its faces at most."""
     from matstd.cad_out.kernel.reader import read_shape, tessellate
 
     corners, triangles, _ = tessellate(read_shape(Path(folder) / STEP), chord)

@@ -6,11 +6,6 @@ from matstd.cad_out.details import datum_touches, engraved_on, widths
 
 
 def cmm_program(standard: Standard, orientation: float = 0.0) -> str:
-    """DMIS program, with the datums, lettering and tolerances of the drawing.
-
-    Args:
-        standard: As designed.
-        orientation: Of the standard on the table of the CMM, turned about z, degrees.
-    """
+    """DMIS program with datums and tolerances of the drawing, turned by `orientation` degrees."""
     engraved = engraved_on(standard)
     return dmis_program(standard, datum_touches(standard), engraved, widths(), orientation)

@@ -19,13 +19,7 @@ def write_sheets(
     raised: float = RAISED,
     errors: MachineErrors | None = None,
 ) -> None:
-    """Write a sheet for every station, and the programs that go with it.
-
-    Args:
-        printed_by: Prints a sheet as PDF; None for no PDF.
-        raised: By how much dry runs are raised, mm.
-        errors: Of the machine that plays the programs on the page; None for none.
-    """
+    """Write a sheet for every station, a PDF with `printed_by`, and the programs beside it."""
     setups: set[str] = set()
     for number, station in enumerate(stations):
         is_further = station.setup in setups

@@ -59,12 +59,7 @@ class Order:
 
 
 def orders(plan: TouchPlan, model: Model, noise: float) -> tuple[Order, ...]:
-    """The plan's own order first, then the same touches in ever quicker ones.
-
-    Args:
-        model: Geometric errors of the machine with their prior.
-        noise: Standard deviation of one touch, mm.
-    """
+    """The plan's own order first, then the same touches in ever quicker ones; noise in mm."""
     bare = picked(plan, np.flatnonzero(plan.request >= 0))
     once = _each_pose_once(bare)
     tried = (

@@ -116,12 +116,7 @@ _GROUPS = {
 
 
 def write_history_page(found: History, folder: str | Path, title: str, follows: str = "") -> None:
-    """Write `report.html`, its pictures and tables into a folder.
-
-    Args:
-        title: Of what was charted, such as the name of a folder.
-        follows: The next command; "" for none.
-    """
+    """Write `report.html`, pictures and tables into a folder; `follows` is the next command."""
     page = Page(
         heading=f"Control charts of {found.occasions[0].chain.name}, {title}",
         lead=history_sentence(found),

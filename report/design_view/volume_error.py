@@ -34,13 +34,7 @@ class ErrorField:
 def error_field(
     brief: Brief, believed: Setup, truth: Sequence[tuple[Effect, Array]], fit: Fit
 ) -> ErrorField | None:
-    """The field over the user's workspace; None on a machine without three linear axes.
-
-    Args:
-        believed: Where the run has the standard.
-        truth: Errors of the simulated machine.
-        fit: Its identified model.
-    """
+    """The field over the user's workspace; None on a machine without three linear axes."""
     workspace, chain = brief.workspace, brief.chain
     axes = chain.linear_axes
     if len(axes) != len(COUNTS):

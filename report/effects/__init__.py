@@ -49,12 +49,7 @@ def effect_cell(step: Step) -> tuple[str, str]:
 
 
 def class_words(step: Step, clauses: Sequence[str] = ()) -> str:
-    """An added effect in a sentence: `growth along Z after switching on (12 min; ...) [...]`.
-
-    Args:
-        step: With an effect.
-        clauses: In round brackets behind the title, before those of its class.
-    """
+    """An effect in a sentence: `growth along Z after switching on (clauses; ...) [...]`."""
     effects = _members(step)
     text, bodies, others = _class(effects)
     alone = effect_title(effects[0])

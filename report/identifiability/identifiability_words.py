@@ -172,12 +172,7 @@ def degree_words(degree: Degree, chain: Chain) -> str:
 def combination_words(
     names: Sequence[str], units: Sequence[str], weights: Array, importance: Array
 ) -> str:
-    """`EXX + 0.52 EXZ - 0.03 µm/µrad EBX ...`: the most important parameters with their weights.
-
-    Args:
-        weights: Shape (P,), the leading one's is one.
-        importance: Weights in units of the expected size of each parameter, (P,).
-    """
+    """`EXX + 0.52 EXZ - 0.03 µm/µrad EBX ...`: the most important parameters with their weights."""
     order = np.argsort(-np.abs(importance), kind="stable")
     kept = [k for k in order if abs(importance[k]) >= MIN_WEIGHT_SHARE * abs(importance[order[0]])]
     label, factor = shown(units[order[0]])

@@ -86,12 +86,7 @@ def write_law_page(
     second: SecondRun | None,
     live: LiveView | None = None,
 ) -> None:
-    """Write `report.html` and its pictures into a folder.
-
-    Args:
-        visit: That distinguishes the laws from their rivals.
-        live: View in which the laws are switched; None for a page of pictures.
-    """
+    """Write `report.html` and its pictures into a folder; in `live` the laws are switched."""
     lead, means, what_next = _head(learning, visit, title)
     page = Page(
         heading=f"What the model leaves of {title}",

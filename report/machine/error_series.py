@@ -72,12 +72,7 @@ class _Space:
     high: Array
 
     def at(self, x: Array, sides: Array) -> Array:
-        """All components, twist before place, (N, 2 L 6).
-
-        Args:
-            x: Readings and time, (N, A + 1).
-            sides: Of the last motion of every axis, (N, A).
-        """
+        """Components at readings and time x (N, A + 1), twist before place, (N, 2 L 6)."""
         touches = self.errors.touches(x[:, :-1], 0.0, sides, x[:, -1])
         found = self.errors.contribution(touches)
         return np.concatenate(
@@ -90,12 +85,7 @@ class _Space:
 
 
 def error_functions(errors: MachineErrors, length: float, duration: float) -> list[ErrorFunction]:
-    """Every group of errors as functions, the largest first.
-
-    Args:
-        length: Of the tool with which sizes are stated, mm.
-        duration: From the time of the state of these errors on, over which they hold, s.
-    """
+    """Groups of errors as functions, the largest first, for a tool length (mm) and a time (s)."""
     limits = np.array([errors.chain.link(a).range for a in errors.chain.axes] + [(0.0, duration)])
     rng = np.random.default_rng(_SEED)
     out = []

@@ -61,12 +61,7 @@ class Played:
 
 
 def played_part(program: Program, errors: MachineErrors, text: str) -> Played:
-    """A part program on the machine that runs it.
-
-    Args:
-        errors: For which the positions lie near enough to one another.
-        text: Of the program.
-    """
+    """A part program on its machine, its positions near enough to one another for the errors."""
     touches, motions = passed(program, errors)
     lines = np.array([m.line for m in program.motions])[motions]
     return Played(

@@ -29,13 +29,7 @@ def write_playback(
     dialect: Dialect,
     errors: MachineErrors | None = None,
 ) -> None:
-    """Write the page.
-
-    Args:
-        plan: What is set up, and with which probe.
-        programs: As written; their text is read again, and nothing else is played.
-        errors: Of the machine on which the programs were tried; None for none.
-    """
+    """Write the page; the text of programs is read again, and nothing else is played."""
     chain = plan.chain
     read = [
         interpret(

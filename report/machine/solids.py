@@ -26,13 +26,7 @@ def box(half: tuple[float, float], low: float, high: float) -> Array:
 
 
 def block(low: Array, high: Array, axes: Array | None = None) -> Array:
-    """Box between two opposite corners, (12, 3, 3).
-
-    Args:
-        low: Smallest coordinates along the axes, (3,), mm.
-        high: Largest, (3,), mm.
-        axes: Directions of its edges in rows, (3, 3); those of the frame without.
-    """
+    """Box between corners `low` and `high`, mm, along the rows of `axes`, (12, 3, 3)."""
     unit_box = _triangles(_trimesh().box((1.0, 1.0, 1.0)))
     corners = 0.5 * (low + high) + unit_box * (high - low)
     return corners if axes is None else corners @ axes

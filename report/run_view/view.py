@@ -55,12 +55,7 @@ _PLACE = Markup(
 def run_view(
     board: Board, findings: Findings, curves: Mapping[str, Sequence[LawCurve]] | None = None
 ) -> LiveView:
-    """The view of a run and its effects.
-
-    Args:
-        findings: What the report says of it.
-        curves: Of laws among its effects, by their names.
-    """
+    """The view of a run, with findings of the report and curves of laws by their names."""
     return LiveView(
         style=style(), place=_PLACE, script=scripted("run_page", run_data(board, findings, curves))
     )

@@ -70,13 +70,7 @@ def _price_words(one: Price) -> str:
 
 
 def fewer_lines(standard: Standard, balls: int, mass: float, limit: float) -> list[str]:
-    """That a standard has fewer balls than its project asks for, and what binds.
-
-    Args:
-        balls: Wanted.
-        mass: Of the finished body, kg.
-        limit: Allowed mass, kg.
-    """
+    """That a standard of a mass (kg) has fewer balls than its project asks for, and what binds."""
     count = sum(not ball.proves for ball in standard.spheres)
     if count >= balls:
         return []

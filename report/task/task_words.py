@@ -13,13 +13,7 @@ FEW_DOF = 5.0  # degrees of freedom below which a quarter of U or more is due to
 def task_lines(
     budgets: Mapping[str, TaskUncertainty], tolerance: float | None, visits: Visits
 ) -> list[str]:
-    """The budgets, the conformity limits of a tolerance, and the limits of validity.
-
-    Args:
-        budgets: By what results are corrected with.
-        tolerance: Width of the zone, mm; None for none.
-        visits: The measurements.
-    """
+    """The budgets, the conformity limits of a tolerance (mm) and the limits of validity."""
     lines = [_budget_sentence(name, one) for name, one in budgets.items()]
     if tolerance is not None:
         lines += [decision_sentence(name, one, tolerance) for name, one in budgets.items()]

@@ -233,12 +233,7 @@ def figures(fit: Fit) -> tuple[str, str, str]:
 
 
 def learnt_lines(fit: Fit, numbers: Mapping[str, Sequence[Reported]]) -> list[str]:
-    """Figures and effects of the fit from which a model was estimated.
-
-    Args:
-        fit: Repeated from the model.
-        numbers: Numbers of the effects, by name, as the model file keeps them.
-    """
+    """Figures and effects, numbers by name, of the fit from which a model was estimated."""
     rms, held_out, chi2 = figures(fit)
     first = (
         f"The model was estimated from these rows: fitted {rms} µm, held out {held_out} µm, "

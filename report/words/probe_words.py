@@ -70,13 +70,7 @@ def ball_lines(
 
 
 def located_lines(believed: Setup, stands: Setup, found: Found | None = None) -> list[str]:
-    """Offset of a standard from its planned pose.
-
-    Args:
-        believed: Its set-up in the programs that were run.
-        stands: Its actual set-up.
-        found: Result of a search; None where the touches of the programs determine it.
-    """
+    """Offset of a standard from its planned pose, by a search or by the touches of programs."""
     beside = inverse(believed.T_table_artefact) @ stands.T_table_artefact
     shift, angles = beside[:3, 3], fixed_xyz_angles(beside[:3, :3]) / DEG
     u = None if found is None else found.u.reshape(2, 3) / np.array([[1.0], [DEG]])
