@@ -121,14 +121,13 @@ def _series(space: _Space, rng: np.random.Generator) -> list[Series] | None:
     parts: list[tuple[tuple[int, int] | None, Callable[[Array], Array]]] = [
         (None, lambda x: space.at(x, np.zeros((len(x), axes))))
     ]
-    plain, total = space.at(x, still), space.at(x, still)
+    total = space.at(x, still)
     sides = rng.choice([-1.0, 1.0], still.shape)
     for axis, sign in product(range(axes), (-1, 1)):
-        moved = still.copy()
-        moved[:, axis] = sign
-        extra = space.at(x, moved) - plain
+        added = _on_one_side(space, axis, sign)
+        extra = added(x)
         if np.any(extra):
-            parts.append(((axis, sign), _on_one_side(space, axis, sign)))
+            parts.append(((axis, sign), added))
             total += np.where(sides[:, [axis]] == sign, extra, 0.0)
     whole = space.at(x, sides)
     # sides of several axes have to add up, or no sum of functions is right
