@@ -16,6 +16,7 @@ import numpy as np
 from matstd.diagnosis.laws.curves import Curves, Group, Waves, curve_evidence
 from matstd.diagnosis.laws.space import MIN_OWN, Space
 from matstd.diagnosis.residual import Bearer, bearers
+from matstd.twin.effects import grid_distance
 from matstd.twin.frames import Array
 from matstd.twin.laws import ON_BALL, SHAPES, WORDS, Driver, curve_columns, drivers, grid
 from matstd.twin.record import Touches
@@ -216,13 +217,21 @@ def _best_of_carriers(
             places=tuple(places[j]),
             explained=power[i, j],
         )
-        for i, j in enumerate(np.argmax(power, axis=1))
+        for i, j in enumerate(np.argmax(power, axis=1) if power.size else ())
     ]
 
 
 def _quick_frequencies(driver: Driver, x: Array) -> Array:
-    """Too quick for a curve; touches follow one another at nearly even times, anywhere."""
-    limit = 0.45 * len(np.unique(x)) if driver.nature == "time" else FAST_WAVES
+    """Too quick for a curve; touches follow one another at nearly even times, anywhere.
+
+    Readings on an even grid show a wave below twice its distance as a longer one.
+    """
+    places = np.unique(x)
+    if driver.nature == "time":
+        limit = 0.45 * len(places)
+    else:
+        distance = grid_distance(places)
+        limit = min(FAST_WAVES, 0.5 * np.ptp(x) / distance) if distance else FAST_WAVES
     return np.asarray(np.arange(8.0, limit, 0.5) / np.ptp(x))
 
 

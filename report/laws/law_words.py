@@ -84,7 +84,8 @@ _LOOKS = {
     ("square", "time"): "It looks like something that switches: coolant, a pump, a chiller.",
     ("saw", "time"): "It looks like a controller with two limits: a cooler, a level.",
     ("sine", "time"): "It looks like a cycle of a cooler or of the room.",
-    ("sine", "linear"): "It looks like a screw, a rack or the interpolation of an encoder.",
+    ("sine", "linear"): "It looks like a screw, a rack or the interpolation of an encoder; across "
+    "the axis, like the bolts or the rolling elements of a guide.",
     ("exp", "time"): "It looks like something that relaxes or warms: a clamping, a drive.",
     ("settling", "time"): "It looks like something that relaxes or warms: a clamping, a drive.",
     ("log", "time"): "It looks like creep.",

@@ -100,8 +100,11 @@ def _rival(one: NamedEffect) -> str:
 
 
 def _odds(log_odds: float) -> str:
-    alike = " (not distinguished)" if log_odds < POLICY.log_odds_alike else ""
-    return f"odds {odds_words(log_odds)}{alike}"
+    if log_odds < -POLICY.log_odds_alike:
+        note = " (it explains the run better)"
+    else:
+        note = " (not distinguished)" if log_odds < POLICY.log_odds_alike else ""
+    return f"odds {odds_words(log_odds)}{note}"
 
 
 def _nothing_named(result: Diagnosis) -> str:
@@ -171,10 +174,14 @@ def promise_sentence(
     limit = BROKEN_PROMISE * promised.elsewhere
     word = "worse than promised" if found.rms > limit else "as good as promised"
     why = ""
-    if found.expected > limit:
+    # a noise that was stated too large is no uncertainty of the model
+    stated = found.repeatability.stated
+    of_model = float(np.sqrt(max(found.expected**2 - stated**2, 0.0)))
+    expected = float(np.hypot(of_model, min(stated, found.scatter)))
+    if expected > limit:
         why = (
             f" At these touches, which differ from those of the model, its uncertainty leads to "
-            f"an expected error of {microns(found.expected)}."
+            f"an expected error of {microns(expected)}."
         )
     again = float(np.linalg.norm([promised.elsewhere, *(one.share for one in others)]))
     if again > limit:

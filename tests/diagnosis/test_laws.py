@@ -45,7 +45,7 @@ from matstd.diagnosis.laws.beginning import Beginning
 from matstd.diagnosis.laws.learn import _by_rival as weighed
 from matstd.diagnosis.laws.library import LibraryEffect
 from matstd.diagnosis.laws.remainder import _determined
-from matstd.diagnosis.laws.screening import by_evidence
+from matstd.diagnosis.laws.screening import _quick_frequencies, by_evidence
 from matstd.diagnosis.laws.search import Ground, _curves
 from matstd.diagnosis.laws.space import Space
 from matstd.diagnosis.remarks import EffectOfOtherRun
@@ -279,8 +279,24 @@ def test_a_diagnosis_learns_the_law_of_what_remains(stylus, tmp_path) -> None:
     assert table["learnt"]["laws"][0]["law"] == one.law.name
     assert table["learnt"]["with_um"] < table["learnt"]["without_um"]
     assert {"effect.py", "law.json", "model.toml"} <= {p.name for p in tmp_path.iterdir()}
+    assert found.promise.same == pytest.approx(found.laws.held_out[0].after)
+    promised = found.model.source.promise
+    assert promised.same == pytest.approx(found.promise.same, rel=1e-5)
+    assert promised.elsewhere == pytest.approx(found.promise.elsewhere, rel=1e-5)
     # the geometry beside the law predicts, that of the start had taken a part of it
     assert compare(second, found.model).rms < 0.9 * compare(second, model_of(found.start)).rms
+
+
+def test_waves_over_even_readings_end_at_twice_their_distance(stylus) -> None:
+    """On targets every 15.625 mm a wave of 0.582 mm gives the same readings as one of 97 mm."""
+    even = np.linspace(0.0, 500.0, 33)
+    same = [np.exp(2j * np.pi * even * f) for f in (1.0 / 97.0, 27.0 / 15.625 - 1.0 / 97.0)]
+    assert np.abs(same[0] - same[1].conj()).max() < 1e-9
+    linear = next(d for d in Ground.of(stylus[2].before.run).field.drivers if d.nature == "linear")
+    assert 0.5 / _quick_frequencies(linear, np.tile(even, 6)).max() > 15.625
+    assert len(_quick_frequencies(linear, np.linspace(0.0, 400.0, 9))) == 0
+    uneven = even + np.random.default_rng(3).uniform(-6.0, 6.0, len(even))
+    assert 0.5 / _quick_frequencies(linear, uneven).max() < 0.5
 
 
 def test_no_curve_is_offered_over_a_direction(stylus) -> None:

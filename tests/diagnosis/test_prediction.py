@@ -234,6 +234,16 @@ def test_a_broken_promise_is_said() -> None:
     assert "as good as promised" in promise_sentence(found, Promise(here, found.rms, ()))
 
 
+def test_a_noise_stated_too_large_is_no_uncertainty_of_the_model() -> None:
+    run = record()
+    noise = np.random.default_rng(5).normal(0.0, 0.2 * run.u)
+    found = compare(replace(run, deviation=noise), ordinary_model(run.touches.chain))
+    assert found.expected > 2.0 * found.rms
+    words = promise_sentence(found, Promise(found.rms, 2.0 * found.rms, ()))
+    assert "as good as promised" in words
+    assert "an expected error" not in words
+
+
 def test_candidates_are_narrowed_by_kind_and_by_name() -> None:
     run = record()
     assert candidates([], [], run) is None

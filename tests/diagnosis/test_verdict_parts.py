@@ -21,6 +21,7 @@ from matstd.diagnosis.geometry import LearntGeometry
 from matstd.diagnosis.residual import Shape, Structure
 from matstd.report.numbers import odds_words
 from matstd.report.verdict import part_lines
+from matstd.report.verdict.part_words import _odds
 from matstd.report.words import verdict_sentence
 from matstd.twin.frames import apply
 from matstd.twin.library import ordinary_model, parse_effect
@@ -179,6 +180,18 @@ def test_odds_in_words():
         "1e6 : 1",
         "> 1e12 : 1",
     ]
+
+
+@pytest.mark.parametrize(
+    ("odds", "words"),
+    [
+        (np.log(1e-7), "odds 1 : 1e7 (it explains the run better)"),
+        (np.log(0.1), "odds 1 : 10 (not distinguished)"),
+        (np.log(1e6), "odds 1e6 : 1"),
+    ],
+)
+def test_a_rival_that_explains_the_run_better_is_distinguished(odds, words):
+    assert _odds(odds) == words
 
 
 def test_a_law_of_a_sensor_is_weighed_against_an_unrecorded_drift(hidden):

@@ -9,6 +9,7 @@ from matstd.twin.effects.geometric import HigherOrder as HigherOrder
 from matstd.twin.effects.geometric import component as component
 from matstd.twin.effects.location import LocationError as LocationError
 from matstd.twin.effects.periodic import MAX_OVERTONES as MAX_OVERTONES
+from matstd.twin.effects.periodic import grid_distance as grid_distance
 from matstd.twin.effects.periodic import usual_distance as usual_distance
 from matstd.twin.effects.probe import ProbeRadius as ProbeRadius
 from matstd.twin.effects.probe import normal_in_tool as normal_in_tool

@@ -235,10 +235,10 @@ def _resolved(q: Array) -> float:
     if usual >= SHORTEST:
         return usual
     finest = float(np.ptp(q)) / min(PERIODS_PER_READING * len(places), MAX_PERIODS)
-    return min(usual, max(finest, 2.0 * _grid_distance(places)))
+    return min(usual, max(finest, 2.0 * grid_distance(places)))
 
 
-def _grid_distance(places: Array) -> float:
+def grid_distance(places: Array) -> float:
     """Distance of the even grid on which ascending readings (N,) stand, 0 where there is none, mm.
 
     A choice of an even log has gaps of one, two and more distances, few of them of one.
