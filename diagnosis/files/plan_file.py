@@ -9,6 +9,7 @@ from matstd.diagnosis.next_visit import RivalPower, VisitPlan
 from matstd.twin.files import reading_columns
 from matstd.twin.record import Touches
 from matstd.twin.text import csv_text
+from matstd.twin.units import UM
 
 
 def planned(touches: Touches) -> list[dict[str, Any]]:
@@ -63,6 +64,7 @@ def _rival(one: RivalPower) -> dict[str, Any]:
         "law": one.effect.name,
         "log_odds_against": one.log_odds,
         "separation": one.separation,
+        "difference_um": one.difference / UM,
         "log_odds_expected": one.expected,
         "power": one.power,
     }

@@ -1,14 +1,17 @@
 """Laws that a run cannot decide between, each fitted in full, and what they predict of a visit."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from matstd.diagnosis.fit import Fit
-from matstd.diagnosis.laws import Learning, LearntLaw
+from matstd.diagnosis.laws import Learning, LearntLaw, log_odds
 from matstd.diagnosis.next_visit.discrimination import Predicted
 from matstd.twin.effects import setup_errors
+from matstd.twin.frames import Array
+from matstd.twin.laws import SHAPES, Driver, Factor
+from matstd.twin.laws import drivers as variables
 from matstd.twin.model import Effect, columns
 from matstd.twin.record import Touches
 
@@ -20,6 +23,11 @@ MOST_RIVALS, MOST_CARRIERS, MOST_SHAPES = 9, 6, 2
 run, and other shapes of the same carrier and variables."""
 
 
+BESIDE = 0.1  # mm beyond the readings at which a law was seen: these repeat within less
+
+ACTS = 0.05  # share of its largest size from which a law acts at a touch
+
+
 @dataclass(frozen=True, eq=False)
 class Hypothesis:
     """One explanation of what a model leaves."""
@@ -27,6 +35,7 @@ class Hypothesis:
     law: Effect  # in it, of the laws that were learnt this one or a rival in its place
     log_odds: float  # of what was learnt against it
     fit: Fit  # with everything that was learnt besides, and the displacements of inner parameters
+    is_unseen: bool = False  # whether it differs from what was learnt at touches not made so far
 
     def own_effects(self, shared: int) -> tuple[Effect, ...]:
         """Effects beyond the first ones of the model, with their displacements."""
@@ -69,6 +78,41 @@ def hypotheses(learning: Learning) -> tuple[Hypothesis, ...]:
             fit = learning.beginning.fitted(beside, True, learning.after.gross)
             out.append(Hypothesis(rival, odds, fit))
     return tuple(out)
+
+
+def unseen(learning: Learning) -> Iterator[Hypothesis]:
+    """The first law with another sign from the other side, or only where it was seen.
+
+    A run of few poses shows a law at few readings of the other axes, and often from one side: of
+    two variables the search then finds one, since that law is the shorter.
+    """
+    law, *others = (one.law for one in learning.laws)
+    if len(law.factors) > 1 or law.is_curve_alone:
+        return
+    touches, fit = learning.before.run.touches, learning.tangent
+    size = np.abs(columns([law], touches) @ fit.theta[fit.of_effect(law.name)])
+    acts = size > ACTS * size.max()
+    for driver in variables(touches):
+        second = _second(driver, driver.values(touches)[acts])
+        if driver in law.drivers or second is None:
+            continue
+        factor, places = second
+        product = replace(law, factors=(*law.factors, factor), places=(*law.places, *places))
+        other = learning.beginning.fitted([product, *others], True, learning.after.gross)
+        against = log_odds(fit, other, 0.0)
+        if against < DECIDED:
+            policy = learning.policy
+            charge = policy.tried_products - policy.tried_singles
+            yield Hypothesis(product, against + charge, other, True)
+
+
+def _second(driver: Driver, seen: Array) -> tuple[Factor, tuple[float, ...]] | None:
+    """A second factor of the same size at all values seen; None of other variables."""
+    if driver.nature == "sign" and not driver.name.startswith("trend-"):
+        return Factor(SHAPES["sign"], driver), ()
+    if driver.nature == "linear":
+        return Factor(SHAPES["window"], driver), (seen.min() - BESIDE, seen.max() + BESIDE)
+    return None
 
 
 def undecided(one: LearntLaw) -> list[tuple[Effect, float]]:

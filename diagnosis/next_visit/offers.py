@@ -42,8 +42,9 @@ def visiting_touches(run: Run, visits: int, each: int, rng: np.random.Generator)
     """Touches of poses visited one after the other, more than a plan takes.
 
     Poses come in random order, set-ups one after the other, every rotary position from a random
-    side. `pose` counts the visits. A run of another instrument than a ball on a standard is
-    repeated reading by reading, in another order.
+    side. Every other one has rotary readings between those of the run. `pose` counts the visits. A
+    run of another instrument than a ball on a standard is repeated reading by reading, in another
+    order.
 
     Args:
         visits: Number of poses, over all set-ups.
@@ -58,12 +59,22 @@ def visiting_touches(run: Run, visits: int, each: int, rng: np.random.Generator)
     share = np.array_split(np.arange(visits), len(rows))
     drawn = [r[rng.integers(len(r), size=len(k))] for r, k in zip(rows, share, strict=True)]
     pose = np.concatenate(drawn)
-    sides = rng.choice([-1.0, 1.0], size=(visits, len(t.chain.rotary_axes)))
+    turns = t.q[pose][:, t.chain.rotary_columns]
+    turns[::2] = _between(turns, rng)[::2]
+    sides = rng.choice([-1.0, 1.0], size=turns.shape)
     number = np.repeat(np.arange(visits), DRAWS_PER_OFFER * each)
     point = rng.integers(len(t), size=len(number))
-    picked, keep = _joined(t, point, pose[number], sides[number])
+    picked, keep = _joined(t, point, pose[number], sides[number], turns[number])
     kept = np.concatenate([np.flatnonzero(keep & (number == k))[:each] for k in range(visits)])
     return replace(picked[kept], pose=number[kept])
+
+
+def _between(turns: Array, rng: np.random.Generator) -> Array:
+    """As many rotary readings within the range of others, in steps that a program states, rad."""
+    if not turns.size:
+        return turns
+    drawn = rng.uniform(turns.min(axis=0), turns.max(axis=0), turns.shape)
+    return np.asarray(np.round(drawn / DEG, TARGET_DIGITS) * DEG)
 
 
 def _clamped_anew(t: Touches) -> Touches:
@@ -73,15 +84,21 @@ def _clamped_anew(t: Touches) -> Touches:
     return replace(t, setups=setups, setup=setup)
 
 
-def _joined(t: Touches, point: IntArray, pose: IntArray, sides: Array) -> tuple[Touches, Mask]:
+def _joined(
+    t: Touches, point: IntArray, pose: IntArray, sides: Array, turns: Array | None = None
+) -> tuple[Touches, Mask]:
     """Points of some rows at the rotary readings and in the set-up of others, and which are made.
 
     Args:
         sides: Sign of the last motion of every rotary axis, (N, R).
+        turns: Rotary readings instead, (N, R), rad.
     """
-    picked = replace(t[point], q=t.q[pose], commanded=None, setup=t.setup[pose], pose=t.pose[pose])
+    q = t.q[pose]
+    if turns is not None:
+        q[:, t.chain.rotary_columns] = turns
+    picked = replace(t[point], q=q, commanded=None, setup=t.setup[pose], pose=t.pose[pose])
     target = picked.point_table + picked.radius[:, None] * picked.normal_table
-    q = _with_linear(picked, target, picked.q.copy())
+    q = _with_linear(picked, target, q.copy())
     approach = linear_approach(t.chain, q, picked.normal_table)
     approach[:, t.chain.rotary_columns] = sides
     commanded = None if t.commanded is None else q

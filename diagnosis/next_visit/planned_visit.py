@@ -19,6 +19,7 @@ from matstd.diagnosis.next_visit.hypotheses import (
     Hypothesis,
     hypotheses,
     predictions,
+    unseen,
 )
 from matstd.diagnosis.next_visit.offers import visiting_touches
 from matstd.twin.compute import one_blas_thread
@@ -26,15 +27,19 @@ from matstd.twin.frames import Array, IntArray, Mask
 from matstd.twin.model import Effect
 from matstd.twin.record import Run, Touches
 
-SIZES, OFFERED_EACH = ((16, 128), (32, 256)), 24
-"""Poses that are offered and touches of the plan: an hour on the machine, or two where an hour
-decides nothing; and touches that are offered at every pose."""
+SIZES = (128, 256, 512)
+"""Touches of the plans that are tried: half an hour to two hours of a machine that takes 15 s for a
+touch. The first one that decides is taken."""
+
+ENOUGH = 0.8  # power from which no longer visit is tried
+
+POSES, OFFERED_EACH = 48, 32
+"""Poses that are offered, and touches at each. Twelve poses of two lots, from which a visit was
+chosen whole, separated the same rivals by about half."""
 
 SPREAD_SHARE = 0.25
 """Share of the touches that is spread over all poses whatever the rivals predict: the new set-ups
 are located by them, and a law that is none of the rivals shows there."""
-
-SEQUENCES = 2  # sequences of poses that are tried with every schedule
 
 LEAST_SEPARATION = 3.0
 """Standard deviations below which a rival is not distinguished: noise would decide."""
@@ -66,6 +71,9 @@ class RivalPower:
     effect: Effect
     log_odds: float  # against it before the visit
     separation: float  # of its prediction from that of the law, standard deviations
+    # root mean square by which both differ at a touch of the visit, beyond what uncertain
+    # parameters and clamping make up for, mm
+    difference: float
     expected: float  # log odds against it after the visit, on average where the law holds
     # probability of odds of 20 : 1 at least, by simulated visits; None where the rival is not
     # distinguished
@@ -98,6 +106,17 @@ class VisitPlan:
     refusal: NoPlan | None = None  # why there are no touches
 
     @property
+    def is_enough(self) -> bool:
+        """Whether it distinguishes all that the run leaves open, and decides often enough."""
+        left = (r for r in self.rivals if r.log_odds < DECIDED and not r.is_distinguished)
+        return next(left, None) is None and (self.power or 0.0) >= ENOUGH
+
+    @property
+    def indistinct(self) -> tuple[RivalPower, ...]:
+        """Rivals that no visit which was tried distinguishes from the law."""
+        return tuple(one for one in self.rivals if not one.is_distinguished)
+
+    @property
     def pause_after(self) -> int | None:
         """Number of touches before the machine stands still; None without a pause."""
         if self.touches is None or not self.schedule.pause:
@@ -128,14 +147,24 @@ def plan_visit(learning: Learning, rng: np.random.Generator) -> VisitPlan:
     predict there, parameters and set-ups uncertain, sensors as they will be. Of the visit that
     separates them best, the touches are chosen; its power is simulated with other weather.
     """
-    return _planned(hypotheses(learning), learning.before.run, rng)
+    found = hypotheses(learning)
+    if len(found) > 1:
+        found = (*found, *unseen(learning))
+    return _planned(found, learning.before.run, rng)
 
 
 def _planned(found: Sequence[Hypothesis], run: Run, rng: np.random.Generator) -> VisitPlan:
+    if not found:
+        return VisitPlan(refusal=NoPlan.NO_LAW)
+    law = found[0].law
+    if len(found) < 2:
+        return VisitPlan(law, refusal=NoPlan.DECIDED)
     visits = _Visits.of(run)
-    for size in SIZES:
-        plan = _of_size(found, visits, size, rng)
-        if plan.refusal is not NoPlan.ALIKE:
+    drawn = visiting_touches(run, POSES, OFFERED_EACH, rng)
+    plan = VisitPlan(law, refusal=NoPlan.FEW)
+    for touches in (n for n in SIZES if n <= len(drawn)):
+        plan = _of_size(found, visits, drawn, touches, rng)
+        if plan.refusal is NoPlan.SAME or plan.is_enough:
             break
     return plan
 
@@ -143,25 +172,22 @@ def _planned(found: Sequence[Hypothesis], run: Run, rng: np.random.Generator) ->
 def _of_size(
     found: Sequence[Hypothesis],
     visits: "_Visits",
-    size: tuple[int, int],
+    drawn: Touches,
+    count: int,
     rng: np.random.Generator,
 ) -> VisitPlan:
-    if not found:
-        return VisitPlan(refusal=NoPlan.NO_LAW)
+    """The best visit of so many of the touches that were drawn."""
     law = found[0].law
-    if len(found) < 2:
-        return VisitPlan(law, refusal=NoPlan.DECIDED)
-    tried = _tried(found, visits, size, rng)
-    if not tried:
-        return VisitPlan(law, refusal=NoPlan.FEW)
+    tried = [_tried(found, visits, drawn, s, count / len(drawn)) for s in SCHEDULES]
     most = np.max([one.apart for one in tried], axis=0)
-    alike = tuple(found[int(k) + 1].law for k in np.flatnonzero(most < ALIKE_BELOW))
-    differ = np.flatnonzero(most >= ALIKE_BELOW)
-    if not len(differ):
+    is_alike, is_rival = most < ALIKE_BELOW, np.array([not one.is_unseen for one in found[1:]])
+    alike = tuple(found[int(k) + 1].law for k in np.flatnonzero(is_alike & is_rival))
+    differ = np.flatnonzero(~is_alike)
+    if not is_rival[differ].any():
         return VisitPlan(law, alike=alike, refusal=NoPlan.SAME)
     found, seen = [found[0], *(found[int(k) + 1] for k in differ)], most[differ] >= LEAST_SEPARATION
     best = max((one.of(differ) for one in tried), key=lambda one: _worst(one.apart, seen))
-    picked = _picked(best.predicted, seen, size[1], len(best.offers))
+    picked = _picked(best.predicted, seen, count, len(best.offers))
     touches = visits.at(best.offers[picked], best.schedule)
     rivals, power = _power(found, visits, touches, rng)
     known = VisitPlan(law, schedule=best.schedule, rivals=rivals, alike=alike)
@@ -173,21 +199,15 @@ def _of_size(
 def _tried(
     found: Sequence[Hypothesis],
     visits: "_Visits",
-    size: tuple[int, int],
-    rng: np.random.Generator,
-) -> list[_Tried]:
-    """Sequences of poses with every schedule; none where too few touches can be made."""
-    out, (poses, touches) = [], size
-    for _ in range(SEQUENCES):
-        drawn = visiting_touches(visits.run, poses, OFFERED_EACH, rng)
-        if len(drawn) < touches:
-            continue
-        for schedule in SCHEDULES:
-            offers = visits.at(drawn, schedule, touches / len(drawn))
-            predicted = predictions(found, offers)
-            apart = np.array([separation(predicted[0], other) for other in predicted[1:]])
-            out.append(_Tried(schedule, offers, predicted, apart))
-    return out
+    drawn: Touches,
+    schedule: Schedule,
+    share: float,
+) -> _Tried:
+    """What every explanation predicts of touches with a schedule."""
+    offers = visits.at(drawn, schedule, share)
+    predicted = predictions(found, offers)
+    apart = np.array([separation(predicted[0], other) for other in predicted[1:]])
+    return _Tried(schedule, offers, predicted, apart)
 
 
 def _worst(apart: Array, seen: Mask) -> float:
@@ -211,7 +231,7 @@ def _power(
     rng: np.random.Generator,
 ) -> tuple[tuple[RivalPower, ...], float | None]:
     """What the plan does against every rival, and how often the true explanation is decided."""
-    predicted = predictions(found, touches)
+    predicted, noise = predictions(found, touches), float(np.median(found[0].fit.u))
     apart = np.array([np.inf, *(separation(predicted[0], other) for other in predicted[1:])])
     prior = np.array([one.log_odds for one in found])
     weight = np.exp(-np.maximum(prior, 0.0))
@@ -232,6 +252,7 @@ def _power(
             effect=one.law,
             log_odds=one.log_odds,
             separation=float(apart[k]),
+            difference=float(apart[k] * noise / np.sqrt(len(touches))),
             expected=float(of_law[:, k].mean()),
             power=float((of_law[:, k] >= DECIDED).mean()) if is_seen[k] else None,
         )

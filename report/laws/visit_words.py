@@ -6,7 +6,7 @@ from matstd.diagnosis.next_visit import NoPlan, RivalPower, VisitPlan
 from matstd.probe_paths.locate import VisitSchedule
 from matstd.report.laws.law_words import carrier_words, short_words
 from matstd.report.layout import Section, Table
-from matstd.report.numbers import digits, odds_words, span
+from matstd.report.numbers import digits, odds_words, span, um
 from matstd.twin.laws import law_of
 from matstd.twin.model import Effect
 from matstd.twin.words import listed
@@ -24,10 +24,12 @@ def visit_sentences(plan: VisitPlan) -> list[str]:
     """What a visit would decide and how it is made, or why none would decide; none without law."""
     if plan.refusal is NoPlan.NO_LAW or plan.law is None:
         return []
-    alike = _alike_sentence(plan)
+    classes = (_indistinct_sentence(plan), _alike_sentence(plan))
     if plan.touches is None:
-        return [line for line in (_refusal_sentence(plan), alike) if line]
-    return [line for line in (_touches_sentence(plan), _power_sentence(plan), alike) if line]
+        lines = (_refusal_sentence(plan), *classes)
+    else:
+        lines = (_touches_sentence(plan), _power_sentence(plan), *classes)
+    return [line for line in lines if line]
 
 
 def visit_section(plan: VisitPlan) -> list[Section]:
@@ -87,14 +89,23 @@ def _schedule_words(plan: VisitPlan) -> str:
 def _power_sentence(plan: VisitPlan) -> str:
     seen = [f"{_name(r.effect)} ({digits(r.separation, 2)} σ)" for r in plan.rivals
             if r.is_distinguished]  # fmt: skip
-    left = [_name(r.effect) for r in plan.rivals if not r.is_distinguished]
-    words = f"It distinguishes the law from {listed(seen, 'and')}"
-    if left:
-        words += f", not from {listed(left, 'or')}"
     power = 100 * (plan.power or 0.0)
     return (
-        f"{words}. In {power:.0f} % of simulated visits the true one of those that it "
-        "distinguishes gets odds of 20 : 1."
+        f"It distinguishes the law from {listed(seen, 'and')}. In {power:.0f} % of simulated "
+        "visits the true one of those that it distinguishes gets odds of 20 : 1."
+    )
+
+
+def _indistinct_sentence(plan: VisitPlan) -> str:
+    """What no visit distinguishes, and how little depends on it."""
+    if not plan.indistinct:
+        return ""
+    names = [f"{_short(r.effect, plan.law)} ({digits(r.separation, 2)} σ)" for r in plan.indistinct]
+    most = max(one.difference for one in plan.indistinct)
+    return (
+        f"No visit with this standard on this machine distinguishes the law from "
+        f"{listed(names, 'or')}: at its touches they differ by {um(most)} rms at most, beyond what "
+        "their parameters and a new clamping make up for, so that either predicts these."
     )
 
 
@@ -109,13 +120,7 @@ def _alike_sentence(plan: VisitPlan) -> str:
 
 def _refusal_sentence(plan: VisitPlan) -> str:
     assert plan.refusal is not None
-    if plan.refusal is not NoPlan.ALIKE:
-        return f"No next visit is planned: {plan.refusal.value}."
-    best = max(plan.rivals, key=lambda one: one.separation)
-    return (
-        f"No next visit is planned: {plan.refusal.value}; the best reaches "
-        f"{digits(best.separation, 2)} against {_name(best.effect)}."
-    )
+    return f"No next visit is planned: {plan.refusal.value}."
 
 
 def visit_lines(schedule: VisitSchedule, resumed: str, touches: int, duration: float) -> list[str]:

@@ -13,13 +13,14 @@ from simulator_laws import law_case
 
 from matstd.api.saved import write_learnt
 from matstd.diagnosis.files import visit_text
-from matstd.diagnosis.laws import learn_laws
+from matstd.diagnosis.laws import POLICY, learn_laws
 from matstd.diagnosis.laws.beginning import Beginning
 from matstd.diagnosis.next_visit import NoPlan, Schedule, greedy, plan_visit, separation
 from matstd.diagnosis.next_visit.course import TIME_CONSTANTS, Course
 from matstd.diagnosis.next_visit.discrimination import log_odds_drawn
-from matstd.diagnosis.next_visit.hypotheses import Hypothesis, hypotheses
-from matstd.diagnosis.next_visit.planned_visit import LEAST_SEPARATION
+from matstd.diagnosis.next_visit.hypotheses import Hypothesis, hypotheses, unseen
+from matstd.diagnosis.next_visit.offers import visiting_touches
+from matstd.diagnosis.next_visit.planned_visit import LEAST_SEPARATION, SIZES
 from matstd.diagnosis.next_visit.planned_visit import _planned as planned
 from matstd.report.laws import visit_sentences
 from matstd.twin.library import parse_effect
@@ -82,9 +83,11 @@ def warm():
     return run, replace(run, deviation=run.deviation + 1.0 * UM * rise)
 
 
-def explanations(run, *names):
+def explanations(run, *names, places=None):
     start = Beginning.of_run(run)
     laws = [parse_effect(name, run.touches.chain) for name in names]
+    if places:
+        laws = [replace(law, places=places, is_sought=False) for law in laws]
     return [Hypothesis(law, 0.0, start.fitted([law])) for law in laws]
 
 
@@ -146,8 +149,85 @@ def test_a_visit_below_three_sigmas_is_refused_with_the_best_one(warm) -> None:
     (rival,) = plan.rivals
     assert 0.0 < rival.separation < LEAST_SEPARATION
     assert rival.power is None
-    assert "the best reaches" in visit_sentences(plan)[0]
+    refusal, indistinct = visit_sentences(plan)
+    assert refusal.endswith("no visit that was tried separates the rivals by three standard "
+                            "deviations.")  # fmt: skip
+    assert f"({rival.separation:.2g} σ)" in indistinct
+    assert f"{rival.difference / UM:.3g} µm rms" in indistinct
     assert visit_text(plan) == ""
+
+
+def test_what_no_visit_distinguishes_differs_by_less_than_its_noise(warm) -> None:
+    """Touches of noise u average to u over the root of their number, three times that at most."""
+    run = warm[0]
+    found = explanations(run, "law(EZX,quad X)", "law(EZX,lin T-spindle)")
+    plan = planned(found, run, np.random.default_rng(0))
+    (rival,) = plan.indistinct
+    noise = float(np.median(found[0].fit.u))
+    assert 0.0 < rival.difference < LEAST_SEPARATION * noise / np.sqrt(SIZES[0])
+
+
+def test_a_longer_visit_is_planned_where_a_short_one_decides_nothing(warm) -> None:
+    """A large wave and a faint one, along the normal or along X."""
+    run, counts = warm[0], []
+    x = run.touches.reading("X")
+    period = 0.3 * np.ptp(x)
+    for size in (3.0, 0.25):
+        seen = replace(run, deviation=run.deviation + size * UM * np.cos(2.0 * np.pi * x / period))
+        found = explanations(seen, "law(bias,sine X)", "law(EZX,sine X)", places=(period,))
+        plan = planned(found, seen, np.random.default_rng(0))
+        counts.append(len(plan.touches) if plan.touches is not None else np.inf)
+    assert counts[0] <= SIZES[0]
+    assert counts[1] > SIZES[0]
+
+
+def test_poses_between_those_of_the_run_are_offered_from_known_sides() -> None:
+    text, *_ = law_case(np.random.default_rng(3), "fork", None, poses=3)
+    run = without_copies(read_back(text, MACHINES["fork"]))
+    offers = visiting_touches(run, 24, 16, np.random.default_rng(0))
+    for axis in "BC":
+        recorded, offered = (np.round(np.degrees(t.reading(axis)), 4)
+                             for t in (run.touches, offers))  # fmt: skip
+        assert recorded.min() <= offered.min() < offered.max() <= recorded.max()
+        assert not set(offered) <= set(recorded)
+    for number in np.unique(offers.pose):
+        rows = offers.pose == number
+        assert np.ptp(offers.reading("B")[rows]) == np.ptp(offers.reading("C")[rows]) == 0.0
+    before, now = (_tool_seen_by_the_standard(t) for t in (run.touches, offers))
+    for feature in np.unique(offers.feature):
+        own = before[run.touches.feature == feature]
+        nearest = (now[offers.feature == feature] @ own.T).max(axis=1)
+        assert np.degrees(np.arccos(np.minimum(nearest, 1.0))).max() < 15.01
+
+
+def _tool_seen_by_the_standard(t) -> np.ndarray:
+    """Chain `w C' X' f Y Z B t`: B turns the spindle about Y; C' turns the table against C."""
+    clamped = [s.T_table_artefact for s in t.setups]
+    turn = np.array([np.arctan2(T[1, 0], T[0, 0]) for T in clamped])[t.setup] - t.reading("C")
+    along, up = np.sin(t.reading("B")), np.cos(t.reading("B"))
+    return np.stack([np.cos(turn) * along, -np.sin(turn) * along, up], axis=1)
+
+
+def test_a_law_may_act_only_where_it_was_seen(warm) -> None:
+    """Its window over another axis is that of the touches at which it acts."""
+    run = warm[0]
+    x, y = run.touches.reading("X"), run.touches.reading("Y")
+    acts = np.abs(x - np.median(x)) < 40.0
+    law = parse_effect("law(bias,window X)", run.touches.chain)
+    law = replace(law, places=(np.median(x) - 40.0, np.median(x) + 40.0), is_sought=False)
+    run = replace(run, deviation=run.deviation + 5.0 * UM * acts)
+    start = Beginning.of_run(run)
+    fit = start.fitted([law], True)
+    one = SimpleNamespace(law=law)
+    learning = SimpleNamespace(
+        laws=[one], tangent=fit, beginning=start, after=fit, before=start.fit, policy=POLICY
+    )
+    found = {h.law.name: h for h in unseen(learning)}
+    window = found["law(bias,window X,window Y)"]
+    assert window.is_unseen
+    assert window.law.places[2:] == pytest.approx((y[acts].min(), y[acts].max()), abs=0.2)
+    # the run speaks against neither: simplicity alone does
+    assert window.log_odds > 0.0
 
 
 def test_without_rivals_there_is_nothing_to_plan(warm, tmp_path) -> None:
