@@ -28,14 +28,20 @@ from simulator_laws import FAMILIES, drawn
 from simulator_visit import visit
 
 from matstd.diagnosis.laws import Learning, learn_laws
-from matstd.diagnosis.next_visit import DECIDED, VisitPlan, plan_visit
-from matstd.diagnosis.next_visit.offers import visiting_touches
-from matstd.diagnosis.next_visit.planned_visit import LEAST_SEPARATION, OFFERED_EACH, POSES
+from matstd.diagnosis.next_visit import (
+    DECIDED,
+    LEAST_SEPARATION,
+    VisitPlan,
+    plan_visit,
+    visiting_touches,
+)
 from matstd.twin.laws import Law, law_of
 from matstd.twin.model import Effect
 from matstd.twin.record import Run, Touches, joined
 
 RUN_POSES, SIGNAL_TO_NOISE, VISITS = 4, (8.0, 25.0), 2
+
+OFFERED = 48, 32  # poses, and touches at each, among which a variable must act
 
 
 def measured(rng: np.random.Generator, e: Experiment, hidden: Any, label: str) -> Run:
@@ -80,7 +86,7 @@ def inert(rng: np.random.Generator, first: Experiment, hidden: Hidden, run: Run,
     Each is held at its value where the law is largest, at the touches of the run and of a visit to
     all poses that are offered: what changes is below three standard deviations by all of them.
     """
-    visits = [run.touches, visiting_touches(run, POSES, OFFERED_EACH, rng)]
+    visits = [run.touches, visiting_touches(run, *OFFERED, rng)]
     changes = dict.fromkeys(sorted(n for n in names if n.removeprefix("last-") in "XYZBC"), 0.0)
     for state in (stated_touches(first, t) for t in visits):
         whole = acted(hidden, state)

@@ -11,6 +11,8 @@ from matstd.diagnosis.next_visit.discrimination import separation as separation
 from matstd.diagnosis.next_visit.hypotheses import DECIDED as DECIDED
 from matstd.diagnosis.next_visit.offers import candidate_targets as candidate_targets
 from matstd.diagnosis.next_visit.offers import candidate_touches as candidate_touches
+from matstd.diagnosis.next_visit.offers import visiting_touches as visiting_touches
+from matstd.diagnosis.next_visit.planned_visit import LEAST_SEPARATION as LEAST_SEPARATION
 from matstd.diagnosis.next_visit.planned_visit import NoPlan as NoPlan
 from matstd.diagnosis.next_visit.planned_visit import RivalPower as RivalPower
 from matstd.diagnosis.next_visit.planned_visit import VisitPlan as VisitPlan
