@@ -165,34 +165,29 @@ def loop(seed: int, i: int) -> tuple[list[bool], bool, bool]:
     own = {variable(v) for v in truth["variables"]}
     truth["inert"] = inert(np.random.default_rng(i), first, hidden, runs["run"], own)
     out, words = [], [f"({', '.join(sorted(truth['inert']))} inert)"] if truth["inert"] else []
-    began, is_class = time.process_time(), False
+    began = time.process_time()
     for k in range(VISITS + 1):
         found = learn_laws(joined(runs))
-        judged = Judged(found, truth, ())
-        out.append(judged.right and judged.is_decided)
-        law = found.laws[0].law.name if found.laws else "-"
-        words.append(f"{law} {'+' if judged.right else '-'}{judged.odds:.1f}/{judged.shape:.1f}")
-        if judged.is_decided:
-            break
         plan = plan_visit(found, rng)
-        judged = Judged(found, truth, plan.alike)
-        if plan.touches is None or k == VISITS:
-            same = [*plan.alike, *(one.effect for one in plan.indistinct)]
-            judged = Judged(found, truth, same)
-            is_class = judged.is_decided and len(same) > len(plan.alike)
-        if judged.is_decided:
-            words.append(f"one class with {len(judged.names)}: {judged.odds:.1f}")
-            out[-1] = judged.right
+        is_last = plan.touches is None or k == VISITS
+        # all touches come from one side, and a visit would show the law from the other
+        unlikely = [r for r in plan.rivals if r.log_odds >= DECIDED and not r.is_unseen]
+        is_open = not is_last and any(r.is_distinguished for r in unlikely)
+        left = [one.effect for one in plan.indistinct] if is_last else []
+        judged = Judged(found, truth, [*plan.alike, *left])
+        is_class = judged.is_decided and not Judged(found, truth, plan.alike).is_decided
+        out.append(judged.right and judged.is_decided and not is_open)
+        law = found.laws[0].law.name if found.laws else "-"
+        words.append(f"{law} {'+' if judged.right else '-'}{judged.odds:.1f}/{judged.shape:.1f}"
+                     f"{' as a class' * is_class}")  # fmt: skip
+        if is_last or (judged.is_decided and not is_open):
+            words += [plan.refusal.name] if plan.refusal and not judged.is_decided else []
             break
-        if plan.touches is None:
-            words.append(plan.refusal.name if plan.refusal else "")
-            break
-        if k < VISITS:
-            n = sum(r.is_distinguished for r in plan.rivals)
-            words.append(f"[{len(plan.touches)} touches, {n} of {len(plan.rivals)} rivals, power "
-                         f"{plan.power or 0.0:.2f}]")  # fmt: skip
-            experiment = made(rng, first, runs["run"], plan)
-            runs[f"visit{k + 1}"] = measured(rng, experiment, hidden, label)
+        n = sum(r.is_distinguished for r in plan.rivals)
+        words.append(f"[{len(plan.touches)} touches, {n} of {len(plan.rivals)} rivals, power "
+                     f"{plan.power or 0.0:.2f}]")  # fmt: skip
+        experiment = made(rng, first, runs["run"], plan)
+        runs[f"visit{k + 1}"] = measured(rng, experiment, hidden, label)
     out += [out[-1]] * (VISITS + 1 - len(out))
     is_false = judged.is_decided and not judged.right
     print(f"{i:3} {family:22} {truth['carrier']:5} {label:8} {time.process_time() - began:5.1f} s  "

@@ -67,6 +67,7 @@ def _rival(one: RivalPower) -> dict[str, Any]:
         "difference_um": one.difference / UM,
         "log_odds_expected": one.expected,
         "power": one.power,
+        "is_unseen": one.is_unseen,
     }
 
 

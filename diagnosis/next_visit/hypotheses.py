@@ -35,7 +35,7 @@ class Hypothesis:
     law: Effect  # in it, of the laws that were learnt this one or a rival in its place
     log_odds: float  # of what was learnt against it
     fit: Fit  # with everything that was learnt besides, and the displacements of inner parameters
-    is_unseen: bool = False  # whether it differs from what was learnt at touches not made so far
+    is_unseen: bool = False  # whether it is the law, but not at readings where no touch shows it
 
     def own_effects(self, shared: int) -> tuple[Effect, ...]:
         """Effects beyond the first ones of the model, with their displacements."""
@@ -84,11 +84,13 @@ def unseen(learning: Learning) -> Iterator[Hypothesis]:
     """The first law with another sign from the other side, or only where it was seen.
 
     A run of few poses shows a law at few readings of the other axes, and often from one side: of
-    two variables the search then finds one, since that law is the shorter.
+    two variables the search then finds one, since that law is the shorter. A direction has two
+    values, and a visit settles it; of other readings it leaves some, and they plan no visit alone.
     """
-    law, *others = (one.law for one in learning.laws)
-    if len(law.factors) > 1 or law.is_curve_alone:
+    laws = [one.law for one in learning.laws]
+    if not laws or len(laws[0].factors) > 1 or laws[0].is_curve_alone:
         return
+    law, *others = laws
     touches, fit = learning.before.run.touches, learning.tangent
     size = np.abs(columns([law], touches) @ fit.theta[fit.of_effect(law.name)])
     acts = size > ACTS * size.max()
@@ -103,7 +105,7 @@ def unseen(learning: Learning) -> Iterator[Hypothesis]:
         if against < DECIDED:
             policy = learning.policy
             charge = policy.tried_products - policy.tried_singles
-            yield Hypothesis(product, against + charge, other, True)
+            yield Hypothesis(product, against + charge, other, driver.nature != "sign")
 
 
 def _second(driver: Driver, seen: Array) -> tuple[Factor, tuple[float, ...]] | None:

@@ -37,9 +37,10 @@ POSES, OFFERED_EACH = 48, 32
 """Poses that are offered, and touches at each. Twelve poses of two lots, from which a visit was
 chosen whole, separated the same rivals by about half."""
 
-SPREAD_SHARE = 0.25
-"""Share of the touches that is spread over all poses whatever the rivals predict: the new set-ups
-are located by them, and a law that is none of the rivals shows there."""
+SPREAD_SHARE, UNSEEN_SHARE = 0.25, 0.15
+"""Shares of the touches that are spread over all poses whatever the rivals predict (new set-ups are
+located by them, and a law that is none of the rivals shows there), and that show the law where the
+run does not."""
 
 LEAST_SEPARATION = 3.0
 """Standard deviations below which a rival is not distinguished: noise would decide."""
@@ -78,6 +79,7 @@ class RivalPower:
     # probability of odds of 20 : 1 at least, by simulated visits; None where the rival is not
     # distinguished
     power: float | None
+    is_unseen: bool  # whether it is the law, but not at readings where no touch shows it
 
     @property
     def is_distinguished(self) -> bool:
@@ -107,14 +109,14 @@ class VisitPlan:
 
     @property
     def is_enough(self) -> bool:
-        """Whether it distinguishes all that the run leaves open, and decides often enough."""
-        left = (r for r in self.rivals if r.log_odds < DECIDED and not r.is_distinguished)
-        return next(left, None) is None and (self.power or 0.0) >= ENOUGH
+        """Whether it distinguishes all rivals, and decides often enough."""
+        return not self.indistinct and (self.power or 0.0) >= ENOUGH
 
     @property
     def indistinct(self) -> tuple[RivalPower, ...]:
         """Rivals that no visit which was tried distinguishes from the law."""
-        return tuple(one for one in self.rivals if not one.is_distinguished)
+        left = (one for one in self.rivals if not one.is_unseen)
+        return tuple(one for one in left if not one.is_distinguished)
 
     @property
     def pause_after(self) -> int | None:
@@ -147,9 +149,7 @@ def plan_visit(learning: Learning, rng: np.random.Generator) -> VisitPlan:
     predict there, parameters and set-ups uncertain, sensors as they will be. Of the visit that
     separates them best, the touches are chosen; its power is simulated with other weather.
     """
-    found = hypotheses(learning)
-    if len(found) > 1:
-        found = (*found, *unseen(learning))
+    found = (*hypotheses(learning), *unseen(learning))
     return _planned(found, learning.before.run, rng)
 
 
@@ -180,14 +180,15 @@ def _of_size(
     law = found[0].law
     tried = [_tried(found, visits, drawn, s, count / len(drawn)) for s in SCHEDULES]
     most = np.max([one.apart for one in tried], axis=0)
-    is_alike, is_rival = most < ALIKE_BELOW, np.array([not one.is_unseen for one in found[1:]])
-    alike = tuple(found[int(k) + 1].law for k in np.flatnonzero(is_alike & is_rival))
-    differ = np.flatnonzero(~is_alike)
-    if not is_rival[differ].any():
-        return VisitPlan(law, alike=alike, refusal=NoPlan.SAME)
-    found, seen = [found[0], *(found[int(k) + 1] for k in differ)], most[differ] >= LEAST_SEPARATION
-    best = max((one.of(differ) for one in tried), key=lambda one: _worst(one.apart, seen))
-    picked = _picked(best.predicted, seen, count, len(best.offers))
+    is_alike, is_unseen = most < ALIKE_BELOW, np.array([one.is_unseen for one in found[1:]])
+    alike = tuple(found[int(k) + 1].law for k in np.flatnonzero(is_alike & ~is_unseen))
+    differ = np.flatnonzero(most >= np.where(is_unseen, LEAST_SEPARATION, ALIKE_BELOW))
+    if is_unseen[differ].all():
+        return VisitPlan(law, alike=alike, refusal=NoPlan.SAME if alike else NoPlan.DECIDED)
+    found, is_unseen = [found[0], *(found[int(k) + 1] for k in differ)], is_unseen[differ]
+    served = (most[differ] >= LEAST_SEPARATION) & ~is_unseen
+    best = max((one.of(differ) for one in tried), key=lambda one: _worst(one.apart, served))
+    picked = _picked(best.predicted, served, is_unseen, count)
     touches = visits.at(best.offers[picked], best.schedule)
     rivals, power = _power(found, visits, touches, rng)
     known = VisitPlan(law, schedule=best.schedule, rivals=rivals, alike=alike)
@@ -215,13 +216,25 @@ def _worst(apart: Array, seen: Mask) -> float:
     return float(np.min(apart[seen])) if seen.any() else float(np.max(apart))
 
 
-def _picked(predicted: Sequence[Predicted], seen: Mask, touches: int, offered: int) -> IntArray:
-    """Rows of the plan in their order: those that separate, and some at every pose."""
+def _picked(
+    predicted: Sequence[Predicted], served: Mask, is_unseen: Mask, touches: int
+) -> IntArray:
+    """Rows of the plan in their order: those that separate rivals, some at every pose, and others.
+
+    Args:
+        served: Rivals that some visit distinguishes.
+        is_unseen: Laws that differ from the own one at readings where no touch shows it.
+    """
     own, *others = predicted
-    served = [one for one, is_seen in zip(others, seen, strict=True) if is_seen] or others
-    evenly = np.unique(np.linspace(0, offered - 1, int(SPREAD_SHARE * touches)).astype(int))
-    best = greedy(own, served, touches - len(evenly))
-    return np.unique(np.concatenate([evenly, np.array(best, dtype=np.int64)]))
+    groups = [
+        [one for one, is_one in zip(others, mask, strict=True) if is_one]
+        for mask in (served, is_unseen)
+    ]
+    beside = int(UNSEEN_SHARE * touches) if groups[1] else 0
+    picked = set(np.linspace(0, len(own[0]) - 1, int(SPREAD_SHARE * touches)).astype(int).tolist())
+    for group, count in zip(groups, (touches - len(picked) - beside, beside), strict=True):
+        picked.update(greedy(own, group or others, count))
+    return np.array(sorted(picked), dtype=np.int64)
 
 
 def _power(
@@ -255,6 +268,7 @@ def _power(
             difference=float(apart[k] * noise / np.sqrt(len(touches))),
             expected=float(of_law[:, k].mean()),
             power=float((of_law[:, k] >= DECIDED).mean()) if is_seen[k] else None,
+            is_unseen=one.is_unseen,
         )
         for k, one in enumerate(found)
         if k

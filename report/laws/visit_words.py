@@ -25,11 +25,11 @@ def visit_sentences(plan: VisitPlan) -> list[str]:
     if plan.refusal is NoPlan.NO_LAW or plan.law is None:
         return []
     classes = (_indistinct_sentence(plan), _alike_sentence(plan))
-    if plan.touches is None:
-        lines = (_refusal_sentence(plan), *classes)
+    if plan.refusal is not None:
+        lines = [f"No next visit is planned: {plan.refusal.value}."]
     else:
-        lines = (_touches_sentence(plan), _power_sentence(plan), *classes)
-    return [line for line in lines if line]
+        lines = [_touches_sentence(plan), _power_sentence(plan), _unseen_sentence(plan)]
+    return [line for line in (*lines, *classes) if line]
 
 
 def visit_section(plan: VisitPlan) -> list[Section]:
@@ -88,12 +88,23 @@ def _schedule_words(plan: VisitPlan) -> str:
 
 def _power_sentence(plan: VisitPlan) -> str:
     seen = [f"{_name(r.effect)} ({digits(r.separation, 2)} σ)" for r in plan.rivals
-            if r.is_distinguished]  # fmt: skip
+            if r.is_distinguished and not r.is_unseen]  # fmt: skip
     power = 100 * (plan.power or 0.0)
+    if not seen:
+        return ""
     return (
         f"It distinguishes the law from {listed(seen, 'and')}. In {power:.0f} % of simulated "
         "visits the true one of those that it distinguishes gets odds of 20 : 1."
     )
+
+
+def _unseen_sentence(plan: VisitPlan) -> str:
+    """Where a visit shows the law and the run does not."""
+    shown = [f"{law.factors[-1].driver.name} ({digits(r.separation, 2)} σ)" for r in plan.rivals
+             if r.is_distinguished and r.is_unseen and (law := law_of(r.effect))]  # fmt: skip
+    if not shown:
+        return ""
+    return f"It shows whether the law acts at other readings, too, of {listed(shown, 'and')}."
 
 
 def _indistinct_sentence(plan: VisitPlan) -> str:
@@ -116,11 +127,6 @@ def _alike_sentence(plan: VisitPlan) -> str:
     return (
         f"One class with the law, since they do the same at every touch that can be made: {names}."
     )
-
-
-def _refusal_sentence(plan: VisitPlan) -> str:
-    assert plan.refusal is not None
-    return f"No next visit is planned: {plan.refusal.value}."
 
 
 def visit_lines(schedule: VisitSchedule, resumed: str, touches: int, duration: float) -> list[str]:
