@@ -115,8 +115,8 @@ def _indistinct_sentence(plan: VisitPlan) -> str:
     most = max(one.difference for one in plan.indistinct)
     return (
         f"No visit with this standard on this machine distinguishes the law from "
-        f"{listed(names, 'or')}: at its touches they differ by {um(most)} rms at most, beyond what "
-        "their parameters and a new clamping make up for, so that either predicts these."
+        f"{listed(names, 'or')}: at its touches they differ by {um(most, 2)} rms at most, beyond "
+        "what their parameters and a new clamping make up for, so that either predicts these."
     )
 
 
