@@ -161,12 +161,20 @@ def _planned(found: Sequence[Hypothesis], run: Run, rng: np.random.Generator) ->
         return VisitPlan(law, refusal=NoPlan.DECIDED)
     visits = _Visits.of(run)
     drawn = visiting_touches(run, POSES, OFFERED_EACH, rng)
-    plan = VisitPlan(law, refusal=NoPlan.FEW)
+    plans = []
     for touches in (n for n in SIZES if n <= len(drawn)):
-        plan = _of_size(found, visits, drawn, touches, rng)
-        if plan.refusal is NoPlan.SAME or plan.is_enough:
+        plans.append(_of_size(found, visits, drawn, touches, rng))
+        if plans[-1].refusal is NoPlan.SAME or plans[-1].is_enough:
             break
-    return plan
+    if not plans:
+        return VisitPlan(law, refusal=NoPlan.FEW)
+    # a rival that the longest visit does not distinguish either asks for no long one
+    *shorter, last = plans
+    for plan in shorter if last.power is not None else ():
+        is_as_good = len(plan.indistinct) <= len(last.indistinct)
+        if is_as_good and (plan.power or 0.0) >= min(ENOUGH, last.power):
+            return plan
+    return last
 
 
 def _of_size(

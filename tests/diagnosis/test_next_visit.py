@@ -243,3 +243,15 @@ def test_without_rivals_there_is_nothing_to_plan(warm, tmp_path) -> None:
     assert table["next_visit"]["refusal"] == "no law was learnt"
     assert table["next_visit"]["power"] is None
     assert not (tmp_path / "next_visit.csv").exists()
+
+
+def test_a_rival_that_no_visit_distinguishes_asks_for_no_longer_one(warm) -> None:
+    """A wave of nearly the same period stays open after any visit."""
+    run = warm[0]
+    x = run.touches.reading("X")
+    seen = replace(run, deviation=run.deviation + 3.0 * UM * np.cos(2.0 * np.pi * x / 60.0))
+    found = explanations(seen, "law(bias,sine X)", "law(EZX,sine X)", places=(60.0,))
+    nearly = explanations(seen, "law(bias,sine X)", places=(60.1,))
+    plan = planned([*found, *nearly], seen, np.random.default_rng(0))
+    assert [one.is_distinguished for one in plan.rivals] == [True, False]
+    assert len(plan.touches) <= SIZES[0]
