@@ -50,13 +50,8 @@ class Promise:
     domains: tuple[Domain, ...]  # blocks left out, the worst first
 
 
-def promise(fit: Fit, held_out: float | None = None) -> Promise:
-    """What a fit promises; the other places are drawn alike each time.
-
-    Args:
-        held_out: Error of blocks left out with the choice of the model repeated without each, mm;
-            None where nothing was chosen by prediction, and the fit alone is repeated.
-    """
+def promise(fit: Fit) -> Promise:
+    """What a fit promises; the other places are drawn alike each time."""
     rng = np.random.default_rng(0)
     found = []
     for name, parts in domains(fit.run.touches, fit.used).items():
@@ -71,8 +66,7 @@ def promise(fit: Fit, held_out: float | None = None) -> Promise:
         u = fit.u * fit.weight
         variances.append(machine_variance(there, fit.model, fit.spread[:m], u))
     square = fit.standardised_test_rms**2 + worst**2 * float(np.mean(variances))
-    same = fit.test_rms if held_out is None else held_out
-    return Promise(same, max(float(np.sqrt(square)), same), tuple(found))
+    return Promise(fit.test_rms, max(float(np.sqrt(square)), fit.test_rms), tuple(found))
 
 
 def machine_variance(touches: Touches, model: Model, root: Array, u: Array) -> Array:

@@ -195,7 +195,7 @@ def _result(
         steps=steps,
         parts=parts,
         predicting=predicting,
-        promise=promise(predicting, None if choice is None else choice.best.error),
+        promise=promise(predicting),
         promise_before=promise(steps[0].fit),
         candidates=candidates,
         structure=start,

@@ -183,7 +183,7 @@ class Diagnosis(Tabular):
             part = geometry_part(geometry, self.faults, self.parts.geometry.left)
             found = replace(
                 found,
-                promise=promise(found.standing, laws.held_out[0].after),
+                promise=promise(found.standing),
                 geometry=geometry,
                 parts=replace(self.parts, geometry=part),
             )

@@ -101,7 +101,8 @@ def _source(
     fit: Fit, run_name: str, before: SavedModel | None, made_with: str, held_out: float | None
 ) -> dict[str, Any]:
     """What the estimates rest upon."""
-    promised = promise(fit, held_out)
+    promised = promise(fit)
+    same = promised.same if held_out is None else held_out
     earlier = before.source.learnt_from if before else []
     return {
         "run": run_name,
@@ -111,8 +112,8 @@ def _source(
         "revision": before.source.revision + 1 if before else 1,
         "learnt_from": [*earlier, *fit.run.fingerprints],
         "made_with": made_with,
-        "held_out_um": float(promised.same) / UM,
-        "elsewhere_um": float(promised.elsewhere) / UM,
+        "held_out_um": float(same) / UM,
+        "elsewhere_um": float(max(promised.elsewhere, same)) / UM,
         "held_out_gross_errors": [int(line) for line in fit.run.line[fit.gross_test_rows]],
         "probes": [list(probe) for probe in probes_of(fit.run.touches)],
         "machine_hash": fit.model.chain.fingerprint,

@@ -279,10 +279,6 @@ def test_a_diagnosis_learns_the_law_of_what_remains(stylus, tmp_path) -> None:
     assert table["learnt"]["laws"][0]["law"] == one.law.name
     assert table["learnt"]["with_um"] < table["learnt"]["without_um"]
     assert {"effect.py", "law.json", "model.toml"} <= {p.name for p in tmp_path.iterdir()}
-    assert found.promise.same == pytest.approx(found.laws.held_out[0].after)
-    promised = found.model.source.promise
-    assert promised.same == pytest.approx(found.promise.same, rel=1e-5)
-    assert promised.elsewhere == pytest.approx(found.promise.elsewhere, rel=1e-5)
     # the geometry beside the law predicts, that of the start had taken a part of it
     assert compare(second, found.model).rms < 0.9 * compare(second, model_of(found.start)).rms
 
