@@ -170,11 +170,11 @@ def _planned(found: Sequence[Hypothesis], run: Run, rng: np.random.Generator) ->
         return VisitPlan(law, refusal=NoPlan.FEW)
     # a rival that the longest visit does not distinguish either asks for no long one
     *shorter, last = plans
-    for plan in shorter if last.power is not None else ():
-        is_as_good = len(plan.indistinct) <= len(last.indistinct)
-        if is_as_good and (plan.power or 0.0) >= min(ENOUGH, last.power):
-            return plan
-    return last
+    if last.power is None:
+        return last
+    enough, most = min(ENOUGH, last.power), len(last.indistinct)
+    good = (p for p in shorter if len(p.indistinct) <= most and (p.power or 0.0) >= enough)
+    return next(good, last)
 
 
 def _of_size(
