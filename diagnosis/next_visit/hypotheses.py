@@ -23,9 +23,9 @@ MOST_RIVALS, MOST_CARRIERS, MOST_SHAPES = 9, 6, 2
 run, and other shapes of the same carrier and variables."""
 
 
-BESIDE = 0.1  # mm beyond the readings at which a law was seen: these repeat within less
+SEEN_MARGIN = 0.1  # mm beyond the readings at which a law was seen: these repeat within less
 
-ACTS = 0.05  # share of its largest size from which a law acts at a touch
+ACTING_SHARE = 0.05  # share of its largest size from which a law acts at a touch
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,7 +93,7 @@ def unseen(learning: Learning) -> Iterator[Hypothesis]:
     law, *others = laws
     touches, fit = learning.before.run.touches, learning.tangent
     size = np.abs(columns([law], touches) @ fit.theta[fit.of_effect(law.name)])
-    acts = size > ACTS * size.max()
+    acts = size > ACTING_SHARE * size.max()
     for driver in variables(touches):
         second = _second(driver, driver.values(touches)[acts])
         if driver in law.drivers or second is None:
@@ -113,7 +113,10 @@ def _second(driver: Driver, seen: Array) -> tuple[Factor, tuple[float, ...]] | N
     if driver.nature == "sign" and not driver.name.startswith("trend-"):
         return Factor(SHAPES["sign"], driver), ()
     if driver.nature == "linear":
-        return Factor(SHAPES["window"], driver), (seen.min() - BESIDE, seen.max() + BESIDE)
+        return Factor(SHAPES["window"], driver), (
+            seen.min() - SEEN_MARGIN,
+            seen.max() + SEEN_MARGIN,
+        )
     return None
 
 
