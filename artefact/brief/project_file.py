@@ -122,7 +122,8 @@ class ProjectTable(Table):
     machine: str = Field(examples=["machine.toml"])
     """path of the machine file, relative to this file"""
     seed: int = Field(ge=0, examples=[1])
-    """seed of all random numbers; the same seed gives the same poses, features and touches"""
+    """seed of all random numbers; the same seed gives the same poses, features and touches (their
+    order within a visit may differ from one kind of processor to another)"""
     confirmed: list[str] = Field(default_factory=list, examples=[["probe.length_mm"]])
     """keys of this file whose values look like a mistake and are meant, such as a probe of 30 mm;
     they are not asked about"""
