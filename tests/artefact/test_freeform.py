@@ -103,6 +103,18 @@ def test_derivatives_and_normal_against_differences():
     assert np.all(patch.normal(uv) @ patch.direction > 0.0)
 
 
+def test_the_jet_of_a_sum_is_that_of_the_summed_control_net():
+    rng = np.random.default_rng(8)
+    nets = rng.uniform(-1.0, 1.0, (2, 9, 8))
+    one, other, both = (
+        graph_patch("FF1", np.eye(4), (20.0, 16.0), net) for net in (*nets, nets[0] - 0.7 * nets[1])
+    )
+    uv = inside(one, rng, 50)
+    summed = one.jet(uv).plus(other.jet(uv), -0.7)
+    for name, expected in vars(both.jet(uv)).items():
+        np.testing.assert_allclose(getattr(summed, name), expected, atol=ROUNDING)
+
+
 def test_sphere_like_patch_has_the_curvature_of_its_sphere():
     R = 60.0
     rng = np.random.default_rng(6)

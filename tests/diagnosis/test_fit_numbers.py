@@ -17,8 +17,8 @@ from matstd.importers import one_axis_machine, positioning_run
 from matstd.importers.instruments import PositioningTest
 from matstd.twin.effects import SHIFT_SD, TURN_SD, setup_errors
 from matstd.twin.errors import NotEnoughData
-from matstd.twin.library import ordinary_model
-from matstd.twin.model import columns
+from matstd.twin.library import ordinary_model, parse_effect
+from matstd.twin.model import Model, columns
 from matstd.twin.units import NM, UM
 
 ROUNDING = 1e-12
@@ -304,3 +304,15 @@ def test_a_place_that_was_left_is_revisited_and_not_replicated() -> None:
     left = fit.residual.reshape(20, 5)
     assert found.revisits.size == pytest.approx(np.sqrt(left.var(axis=0, ddof=1).mean()))
     assert found.revisits.dof == 95
+
+
+def test_an_instant_has_no_tangent_a_time_constant_has_one(case) -> None:
+    """Columns of a jump step where its instant passes a touch; those of a lag are differentiable."""
+    run = case(5, "hsm600u", ("thermal-lag(EXC)",)).run[::6]
+    chain, time = run.touches.chain, run.touches.time
+    lag = parse_effect("thermal-lag(EXC)", chain)
+    jump = parse_effect("jump(EXX)", chain).tuned(time[len(time) // 2])
+    model = Model(chain, (*ordinary_model(chain).effects, lag, jump))
+    free = np.ones(sum(len(e.parameters) for e in model.effects))
+    tangents = fit_run(run, model, free_inner=free).tangents
+    assert [t.effect.name for t in tangents] == [lag.name]
