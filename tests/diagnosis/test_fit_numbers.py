@@ -307,7 +307,7 @@ def test_a_place_that_was_left_is_revisited_and_not_replicated() -> None:
 
 
 def test_an_instant_has_no_tangent_a_time_constant_has_one(case) -> None:
-    """Columns of a jump step where its instant passes a touch; those of a lag are differentiable."""
+    """Columns of a jump step where its instant passes a touch; those of a lag have a slope."""
     run = case(5, "hsm600u", ("thermal-lag(EXC)",)).run[::6]
     chain, time = run.touches.chain, run.touches.time
     lag = parse_effect("thermal-lag(EXC)", chain)
