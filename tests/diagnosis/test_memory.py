@@ -5,13 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from marks import slow
+from mpmath import mp
 from scipy.linalg import block_diag
 
 from matstd.diagnosis.answer import Verdict, diagnose
 from matstd.diagnosis.files import model_text
 from matstd.diagnosis.fit import Prior, fit_run
 from matstd.diagnosis.policy import POLICY
-from matstd.diagnosis.regression import Memory, likely_memory, whitener
+from matstd.diagnosis.regression import PRIOR_DOF, Memory, likely_memory, whitener
+from matstd.diagnosis.regression.memory import MEMORY_PASSES, _marginal
 from matstd.diagnosis.remarks import remarks
 from matstd.report.words import remark_sentence, verdict_sentence
 from matstd.twin.effects import setup_errors
@@ -199,3 +201,20 @@ def test_noise_that_remembers_is_said_to_and_nothing_is_named(noisy, tmp_path) -
     )
     (tmp_path / "model.toml").write_text(model_text(result.fit, "run.csv"), encoding="utf-8")
     assert "held_out_um" in (tmp_path / "model.toml").read_text(encoding="utf-8")
+
+
+def test_evidence_beside_columns_of_a_wide_prior_is_that_of_all_digits() -> None:
+    """Two columns of a prior 1e8 times the noise point the same way, as those of two lines do."""
+    rng = np.random.default_rng(8)
+    X, y = rng.standard_normal((12, 4)), 3.0 * rng.standard_normal(12)
+    X[:, :2] = 1e8 * X[:, :1]
+    with mp.workdps(60):
+        C, z = mp.matrix(X.tolist()), mp.matrix(y.tolist())
+        square = mp.mpf(1)
+        for remaining in reversed(range(MEMORY_PASSES + 1)):
+            V = square * mp.eye(12) + C * C.T  # the covariance of the deviations, not the normals
+            objective = (z.T * mp.lu_solve(V, z))[0]
+            if remaining:
+                square *= (objective + PRIOR_DOF) / (12 + PRIOR_DOF)
+        expected = float(-(mp.log(mp.det(V)) + objective) / 2)
+    assert _marginal(X, y, 0.0) == pytest.approx(expected, abs=1e-6)
