@@ -176,7 +176,10 @@ def planted_one(k: int, seed: int) -> str:
     start = time.perf_counter()
     found, refusal = named(*one.edit(run, machine))
     wanted = (one.fault, tuple(sorted(one.axes)))
-    outcome = "right" if wanted in found else "misnamed" if found else "missed"
+    # a table out of reach is refused before any touch is read, with the line that is wrong
+    is_asked = one.fault is Fault.AXIS_REVERSED and f"axis.{one.axes[0]}.direction:" in refusal
+    is_named = wanted in found or is_asked
+    outcome = "right" if is_named else "misnamed" if found else "missed"
     stated = "; ".join(f"{f.value} {'/'.join(axes)}".strip() for f, axes in found)
     seconds = time.perf_counter() - start
     print(

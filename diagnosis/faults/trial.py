@@ -257,7 +257,8 @@ def _description_fault(
     )
     if not suspect.free and (not falls or unit_mistake(after) is not None):
         return None
-    if suspect.free and not falls and after.test_rms > before.test_rms:
+    is_odder = after.widened >= before.widened
+    if suspect.free and is_odder and after.test_rms > before.test_rms:
         return None
     changed = chain.notation != before.model.chain.notation
     return DescriptionFault(

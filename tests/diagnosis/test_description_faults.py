@@ -88,6 +88,18 @@ def test_a_tool_length_and_the_point_of_its_tilting_axis_are_not_distinguished(t
     assert "either" in fault_sentences([fault])[0]
 
 
+def test_a_line_wrong_by_a_millimetre_is_named_though_odd_errors_predict_as_well() -> None:
+    """Errors half as large again as usual take it up, and predict poses left out as well."""
+    run, machine, _ = simulate_case(np.random.default_rng([1, 14]), "hsm600u", with_alike=False)
+    wrong = re.sub(r"(\[axis\.B\]\nrange = [^\n]*\npoint = \[)0\.0,", r"\1-1.0,", machine)
+    assert wrong != machine
+    (fault,) = faults_in(run, wrong)
+    assert (fault.fault, fault.axes) == (Fault.PIVOT, ("B",))
+    assert fault.numbers[0].name == "EX0B"
+    assert fault.numbers[0].change == pytest.approx(1.0, abs=4.0 * fault.numbers[0].u)
+    assert fault.widened[0] > 1.2 > fault.widened[1]
+
+
 @pytest.fixture(scope="module")
 def pivot(texts):
     """The line of C stated 2 mm off: the fit, and what is suspected."""

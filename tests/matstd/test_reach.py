@@ -183,6 +183,17 @@ def test_travels_of_the_opposite_sign_far_from_the_table_are_asked_about(tmp_pat
     assert is_reached(read_project(carried_by_y(tmp_path, "[-700.0, -100.0]", -400.0)))
 
 
+def test_a_direction_opposite_to_the_readings_is_asked_about(tmp_path: Path) -> None:
+    """The travel is right as it stands, so no other range is offered."""
+    reversed_y = "[-700.0, -100.0]\ndirection = [0.0, -1.0, 0.0]"
+    asked = (
+        r"axis.Y.direction: found \[0, -1, 0\], with the range \[-700, -100\], 500 mm from the "
+        r"table, expected the motion of the tool relative to the workpiece; is it \[0, 1, 0\]\?"
+    )
+    with pytest.raises(BadFile, match=asked):
+        read_project(carried_by_y(tmp_path, reversed_y, -400.0))
+
+
 def with_few_sites(patches, reach, blank, poses, _sites, seed):
     return room_for(patches, reach, blank, poses, 40, seed)
 

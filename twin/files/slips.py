@@ -273,11 +273,19 @@ def _far_table(chain: Chain) -> Iterator[BadValue]:
         link = chain.link(name)
         low_end, high_end = np.sort(np.negative(link.range) * link.direction[axis])
         is_mirrored = low_end - FARTHEST_TABLE <= origin[axis] <= high_end + FARTHEST_TABLE
-        if link.carries_workpiece and abs(link.direction[axis]) > 0.5 and is_mirrored:
-            found = f"{_pair(*link.range)}, {away:.0f} mm from the table"
-            meant = _pair(-link.range[1], -link.range[0])
+        if abs(link.direction[axis]) < 0.5 or not is_mirrored:
+            continue
+        beside = f"{_pair(*link.range)}, {away:.0f} mm from the table"
+        if link.direction[link.own] < 0.0:
+            found = f"{_list(link.direction)}, with the range {beside}"
+            meant = _list(0.0 - link.direction)
+            expected = f"the motion of the tool relative to the workpiece; is it {meant}?"
+            yield BadValue(f"axis.{name}.direction", found, expected)
+            return
+        if link.carries_workpiece:
+            meant = _pair(0.0 - link.range[1], 0.0 - link.range[0])
             expected = f"readings that move the tool relative to the workpiece; is it {meant}?"
-            yield BadValue(f"axis.{name}.range", found, expected)
+            yield BadValue(f"axis.{name}.range", beside, expected)
             return
     found = f"{_list(origin)}, {away:.0f} mm beyond the travel along {'XYZ'[axis]}"
     yield BadValue(
