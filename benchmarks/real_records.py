@@ -106,8 +106,7 @@ def transfer(source, path: Path) -> tuple[float, float]:
     count = len(fit.model.parameters)
     estimates = Prior.of_estimates(fit.theta[:count], fit.covariance[:count, :count])
     found = compare(frame_run(path, whole=True), fit.model, estimates)
-    promised = source.choice.best.error if source.choice else fit.test_rms
-    return found.rms / UM, promised / UM
+    return found.rms / UM, source.promise.elsewhere / UM
 
 
 def main() -> None:

@@ -50,8 +50,14 @@ class Promise:
     domains: tuple[Domain, ...]  # blocks left out, the worst first
 
 
-def promise(fit: Fit) -> Promise:
-    """What a fit promises; the other places are drawn alike each time."""
+def promise(fit: Fit, chosen: float | None = None) -> Promise:
+    """What a fit promises; the other places are drawn alike each time.
+
+    Args:
+        chosen: Error of blocks left out, the choice of the model repeated without each, mm: the
+            error of rows that nothing was chosen by, unless the file holds such rows out itself.
+            None where nothing was chosen by prediction.
+    """
     rng = np.random.default_rng(0)
     found = []
     for name, parts in domains(fit.run.touches, fit.used).items():
@@ -66,7 +72,8 @@ def promise(fit: Fit) -> Promise:
         u = fit.u * fit.weight
         variances.append(machine_variance(there, fit.model, fit.spread[:m], u))
     square = fit.standardised_test_rms**2 + worst**2 * float(np.mean(variances))
-    return Promise(fit.test_rms, max(float(np.sqrt(square)), fit.test_rms), tuple(found))
+    same = fit.test_rms if chosen is None or fit.test_rows.any() else chosen
+    return Promise(same, max(float(np.sqrt(square)), same), tuple(found))
 
 
 def machine_variance(touches: Touches, model: Model, root: Array, u: Array) -> Array:

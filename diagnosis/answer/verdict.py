@@ -80,7 +80,7 @@ class Diagnosis(Tabular):
         parts: Geometry, named effects and remainder, each with its weight.
         predicting: The model that predicts: what was added, with every member of its classes that
             predicts differently.
-        promise: Errors to expect of it, at the same touches and elsewhere; of laws that stand.
+        promise: Errors to expect of it, at the same touches and elsewhere; with laws that stand.
         promise_before: The same of the starting model.
         structure: What the residual of the starting model varies with.
         left: What the residual of the last step varies with; empty unless unexplained.
@@ -151,14 +151,8 @@ class Diagnosis(Tabular):
 
     @property
     def standing(self) -> Fit:
-        """The model with everything that stands.
-
-        It has laws where they replace names, and where the run is unexplained without them.
-        """
-        if self.laws is None or not self.laws.laws:
-            return self.fit
-        is_whole = self.withdrawn or self.verdict is Verdict.UNEXPLAINED
-        return self.laws.after if is_whole else self.fit
+        """The model with everything that stands: names, and laws beside them or in their place."""
+        return self.laws.after if self.laws is not None and self.laws.laws else self.fit
 
     @property
     def has_fallen(self) -> bool:
@@ -168,11 +162,11 @@ class Diagnosis(Tabular):
     def with_laws(self, laws: Learning, before: Prior | None = None) -> Self:
         """The same with laws of what remains.
 
-        Where the laws stand in the model, the errors to expect and the geometry are those with
-        them: in an unexplained run, and in place of names. What a law explains, the geometry
-        imitates without it: straightness of an axis along which the run drifted. Names that they
-        explain better are withdrawn: none of them stands in a headline, and no plan distinguishes
-        a name withdrawn from its rivals.
+        The errors to expect and the geometry are those with them: what a law explains, the geometry
+        imitates without it, as the straightness of an axis along which the run drifted. The errors
+        are those of the average over laws that the run does not distinguish, which predicts. Names
+        that they explain better are withdrawn: none of them stands in a headline, and no plan
+        distinguishes a name withdrawn from its rivals.
 
         Args:
             before: Estimates of the starting model from an earlier run.
@@ -183,7 +177,7 @@ class Diagnosis(Tabular):
             part = geometry_part(geometry, self.faults, self.parts.geometry.left)
             found = replace(
                 found,
-                promise=promise(found.standing),
+                promise=promise(laws.saved),
                 geometry=geometry,
                 parts=replace(self.parts, geometry=part),
             )

@@ -7,7 +7,7 @@ import numpy as np
 from scipy.special import stdtr
 
 from matstd.diagnosis.choice.noise_memory import max_noise
-from matstd.diagnosis.choice.prediction import Choice, ChoiceRule
+from matstd.diagnosis.choice.prediction import Choice
 from matstd.diagnosis.evidence import (
     EffectSet,
     Progress,
@@ -94,8 +94,7 @@ def _chance(choice: Choice) -> float:
     Student's test of the logarithms of the errors, block by block: of few blocks it can never be
     small, and that is honest.
     """
-    nothing: ChoiceRule = choice.rules[0]
-    gain = np.log(nothing.errors / choice.best.errors)
+    gain = np.log(choice.nothing.errors / choice.best.errors)
     count = len(gain)
     return float(stdtr(count - 1, -gain.mean() / (gain.std(ddof=1) / np.sqrt(count))))
 

@@ -69,6 +69,11 @@ class Choice:
     blocks: int  # number of blocks that were left out, one after the other
     memory: Memory | None  # of what is left with it; None where it is white
 
+    @property
+    def nothing(self) -> ChoiceRule:
+        """The model without any of the ways, with what the user added, in the same blocks."""
+        return self.rules[0]
+
 
 def chosen_by_prediction(
     task: DiagnosisTask,

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from matstd.diagnosis.accuracy import promise
+from matstd.diagnosis.accuracy import Promise, promise
 from matstd.diagnosis.files.curve_table import curve_entries
 from matstd.diagnosis.files.determined import Determined, determined_text
 from matstd.diagnosis.files.model_file import (
@@ -31,7 +31,7 @@ def model_text(
     run_name: str,
     before: SavedModel | None = None,
     made_with: str = "",
-    held_out: float | None = None,
+    promised: Promise | None = None,
     reported: Mapping[str, Sequence[Reported]] | None = None,
     determined: Sequence[GeometryRow | Determined] = (),
     shares: Mapping[str, float] | None = None,
@@ -44,8 +44,7 @@ def model_text(
         run_name: Name of the run file, for a later reader of the model.
         before: Model whose estimates the fit began with; None if it began with none.
         made_with: Name and version of the program, for the same reader.
-        held_out: Plain error of rows not seen in the choice of the model, mm; None for that of the
-            fit.
+        promised: Errors to expect of it as they were reported; None for those of the fit alone.
         reported: Sizes of effects as reported, by name.
         determined: Quantities that the run determines.
         shares: Shares of effects between which the run does not distinguish, by name.
@@ -82,7 +81,7 @@ def model_text(
     curves = curve_entries(standing(fit.model), theta, covariance)
     tables = {
         "machine": _machine(fit.model.chain),
-        "source": _source(fit, run_name, before, made_with, held_out),
+        "source": _source(fit, run_name, before, made_with, promised or promise(fit)),
         "effect": entries,
         **({"curve": curves} if curves else {}),
     }
@@ -98,11 +97,9 @@ def model_of(fit: Fit) -> SavedModel:
 
 
 def _source(
-    fit: Fit, run_name: str, before: SavedModel | None, made_with: str, held_out: float | None
+    fit: Fit, run_name: str, before: SavedModel | None, made_with: str, promised: Promise
 ) -> dict[str, Any]:
     """What the estimates rest upon."""
-    promised = promise(fit)
-    same = promised.same if held_out is None else held_out
     earlier = before.source.learnt_from if before else []
     return {
         "run": run_name,
@@ -112,8 +109,8 @@ def _source(
         "revision": before.source.revision + 1 if before else 1,
         "learnt_from": [*earlier, *fit.run.fingerprints],
         "made_with": made_with,
-        "held_out_um": float(same) / UM,
-        "elsewhere_um": float(max(promised.elsewhere, same)) / UM,
+        "held_out_um": float(promised.same) / UM,
+        "elsewhere_um": float(promised.elsewhere) / UM,
         "held_out_gross_errors": [int(line) for line in fit.run.line[fit.gross_test_rows]],
         "probes": [list(probe) for probe in probes_of(fit.run.touches)],
         "machine_hash": fit.model.chain.fingerprint,

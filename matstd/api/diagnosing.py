@@ -93,16 +93,19 @@ class Diagnosis(Saveable, answer.Diagnosis):
     def model_text(self) -> str:
         """Text of the model file."""
         made_with = f"material-standard {versions()['material-standard']}"
-        is_all = self.learnt is self.predicting and self.choice is not None
-        promised = self.choice.best.error if is_all and self.choice else None
-        shares: dict[str, float] = {}
-        if self.laws is not None and self.learnt is self.laws.saved and self.laws.laws:
-            promised, shares = self.laws.held_out[0].after, self.laws.shares
+        learnt, laws = self.learnt, self.laws if self.laws and self.laws.laws else None
+        shares = laws.shares if laws is not None and learnt is laws.saved else {}
+        # errors to expect are those that the console states of the same model
+        stated = (
+            (self.promise, laws.saved if laws else self.predicting),
+            (self.promise_before, self.start),
+        )
+        promised = next((one for one, fit in stated if fit is learnt), None)
         reported = {s.effect.name: s.reported for s in self.steps if s.effect is not None}
         # with a law in the model, too, as console and page report them: one error has one value
         known = [row for row in self.geometry.rows if row.is_determined]
         return model_text(
-            self.learnt, self.title, self.before, made_with, promised, reported, known, shares
+            learnt, self.title, self.before, made_with, promised, reported, known, shares
         )
 
     @property

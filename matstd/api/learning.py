@@ -54,10 +54,9 @@ class LearntLaws(Saveable, laws.Learning):
     def model_text(self) -> str:
         """Text of the model file, the laws in it."""
         made_with = f"material-standard {versions()['material-standard']}"
-        promised = self.held_out[0].after if self.held_out else None
         known = [row for row in self.geometry.rows if row.is_determined]
         return model_text(
-            self.saved, self.title, None, made_with, promised, determined=known, shares=self.shares
+            self.saved, self.title, made_with=made_with, determined=known, shares=self.shares
         )
 
     @cached_property

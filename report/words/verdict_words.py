@@ -51,13 +51,12 @@ def _unexplained(diagnosis: Diagnosis) -> str:
 
 def _fall(diagnosis: Diagnosis) -> str:
     """The error to expect, which falls: of what predicts, so elsewhere first."""
+    before, after = diagnosis.promise_before, diagnosis.promise
     if diagnosis.choice is not None and not diagnosis.fit.test_rows.any():
-        first, best = diagnosis.choice.rules[0], diagnosis.choice.best
         return (
             "the error of blocks left out, with the choice repeated without each, falls from "
-            f"{microns(first.error)} to {microns(best.error)}"
+            f"{microns(before.same)} to {microns(after.same)}"
         )
-    before, after = diagnosis.promise_before, diagnosis.promise
     verb = "falls" if after.elsewhere < before.elsewhere else "rises"
     return (
         f"the error to expect at other places {verb} from {microns(before.elsewhere)} to "
@@ -149,6 +148,7 @@ def _verdict_alone(diagnosis: Diagnosis) -> str:
         return _of_law(diagnosis, laws, named if diagnosis.withdrawn else [*named, *found])
     also = f" Added by name: {'; '.join(named)}." if named else ""
     them = "it" if len(steps) == 1 else "them"
+    them += "" if laws is None else " and the law" if len(laws.laws) == 1 else " and the laws"
     if diagnosis.verdict is Verdict.MISSING:
         what = "one effect" if len(found) == 1 else f"{len(found)} effects"
         more = f" ({_plural(doubtful)} not certain or too small to name)" if doubtful else ""

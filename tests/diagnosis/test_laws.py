@@ -279,6 +279,11 @@ def test_a_diagnosis_learns_the_law_of_what_remains(stylus, tmp_path) -> None:
     assert table["learnt"]["laws"][0]["law"] == one.law.name
     assert table["learnt"]["with_um"] < table["learnt"]["without_um"]
     assert {"effect.py", "law.json", "model.toml"} <= {p.name for p in tmp_path.iterdir()}
+    # console and model file state one error, which another run at other places meets
+    promised = found.model.source.promise
+    assert promised.same == pytest.approx(found.promise.same, rel=1e-5)
+    assert promised.elsewhere == pytest.approx(found.promise.elsewhere, rel=1e-5)
+    assert 0.8 < compare(second, found.model).rms / promised.elsewhere < 1.25
     # the geometry beside the law predicts, that of the start had taken a part of it
     assert compare(second, found.model).rms < 0.9 * compare(second, model_of(found.start)).rms
 
@@ -343,8 +348,13 @@ def test_a_name_beside_which_a_law_stands_is_not_withdrawn(slipped) -> None:
     searched, learnt = slipped
     found = searched.with_laws(replace(learnt, instead_of=(), instead_odds=0.0))
     assert found.withdrawn == ()
-    assert found.standing is found.fit
+    assert found.standing is learnt.after
     assert "Withdrawn" not in verdict_sentence(found)
+    # what predicts has both, so the error falls with both
+    fall = f"{found.promise_before.elsewhere / UM:.2f} µm to {found.promise.elsewhere / UM:.2f} µm"
+    assert f"With it and the law the error to expect at other places falls from {fall}" in (
+        verdict_sentence(found)
+    )
     headline = diagnosis_table(found)["headline"]
     assert (headline["effects"], headline["withdrawn"]) == (["artefact-slip"], [])
     assert headline["laws"] == [learnt.laws[0].law.name]

@@ -7,7 +7,9 @@ import pytest
 from made_up import gauge_touches
 from scipy.integrate import solve_ivp
 
+from matstd.api.diagnosing import Diagnosis as Saved
 from matstd.api.diagnosing import candidates
+from matstd.api.saved import extended
 from matstd.diagnosis.accuracy import Promise, blocks
 from matstd.diagnosis.answer import ConfusionClass, Diagnosis, Step, compare, diagnose
 from matstd.diagnosis.answer.ambiguity import Rival
@@ -21,7 +23,8 @@ from matstd.diagnosis.evidence import EffectSet, ResidualSpace, ScaledEffect, pr
 from matstd.diagnosis.fit import Prior, fit_run
 from matstd.diagnosis.regression import Memory
 from matstd.diagnosis.search import DiagnosisTask, searched
-from matstd.report.verdict import promise_sentence
+from matstd.report.verdict import part_lines, promise_sentence
+from matstd.report.words import verdict_sentence
 from matstd.report.words.diagnosis_words import named_value
 from matstd.twin.errors import DesignError
 from matstd.twin.library import ordinary_model, parse_effect
@@ -199,6 +202,21 @@ def test_the_stated_error_has_paid_for_the_choice(chosen) -> None:
     total = np.sqrt(np.sum(way.rows * way.errors**2) / N)
     assert way.error == pytest.approx(total)
     assert choice.best.error <= 1.05 * min(w.error for w in choice.rules)
+
+
+def test_the_error_of_a_choice_is_one_number_wherever_it_is_stated(result) -> None:
+    """Verdict, parts and model file; before and after are of the same blocks."""
+    before, after = (rule.error / UM for rule in (result.choice.rules[0], result.choice.best))
+    assert before > after > 1.5 * result.fit.test_rms / UM  # no fit to all rows shows it
+    fall = f"falls from {before:.2f} µm to {after:.2f} µm"
+    line = dict(part_lines(result))["error to expect"]
+    assert line.startswith(f"{before:.2f} µm → {after:.2f} µm at other places")
+    assert f"{after:.2f} µm at the same touches" in line
+    assert fall in verdict_sentence(result)
+    for auto, error in ((True, after), (False, before)):
+        saved = extended(Saved, result, auto=auto).model
+        assert saved.source.promise.same / UM == pytest.approx(error)
+        assert saved.source.promise.elsewhere / UM == pytest.approx(error)
 
 
 def test_of_the_set_that_was_weighed_all_is_reported_but_what_chance_explains(result) -> None:
