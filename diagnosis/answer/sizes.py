@@ -125,7 +125,7 @@ def _instants(
 
 def _jumps(complement: ResidualSpace, inner: Inner, value: float) -> Array:
     """Times of touches around an instant, ascending, within the grid."""
-    times = np.unique(complement.touches.time[complement.used])
+    times = np.unique(inner.clocked(complement.touches)[complement.used])
     first = int(np.searchsorted(times, value)) - MAX_INSTANTS
     near = times[max(first, 0) : first + 2 * MAX_INSTANTS]
     low, high = float(np.min(inner.grid)), float(np.max(inner.grid))

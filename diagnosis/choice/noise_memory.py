@@ -13,10 +13,11 @@ import numpy as np
 
 from matstd.diagnosis.evidence import Progress, RawColumns, ScaledEffect, quiet
 from matstd.diagnosis.fit import Fit
+from matstd.diagnosis.laws import memory_score
 from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.regression import GrossErrors, Memory, likely_memory
 from matstd.diagnosis.search import WHOLE_BELOW, DiagnosisTask, SearchState, searched
-from matstd.twin.model import Effect
+from matstd.twin.model import Effect, inner_values
 from matstd.twin.record import Run
 
 CHOSEN_ROWS = 3000  # rows of the choice: a wave of an eighth of the noise is found in so many
@@ -75,6 +76,9 @@ def search_with_memory(
         task = replace(task, memory=memory_beside(task, (*added, *start)))
         return task, searched(task, added, candidates, progress, start)
     final = searched(task, added, candidates, progress)
+    if (name := _wandering(task, added, final)) is not None:
+        others = [effect for effect in candidates if effect.name != name]
+        return search_with_memory(task, added, others, progress)
     memory = memory_beside(task, (*added, *final.effects), final.base.gross)
     if memory is not None:
         beside = replace(task, memory=memory)
@@ -83,6 +87,27 @@ def search_with_memory(
         if is_noise and _evidence(found) > _evidence(final):
             return beside, found
     return task, final
+
+
+def _wandering(
+    task: DiagnosisTask, added: tuple[ScaledEffect, ...], final: SearchState
+) -> str | None:
+    """Name of a found effect that begins at an instant where a memory explains about as much.
+
+    Noise that wanders is elsewhere after almost any instant. The memory is charged as beside a law,
+    the effect for its instants.
+    """
+    for member in final.chosen.members:
+        inner = [i for i, _ in inner_values(member.effect, task.run.touches)]
+        instants = [len(i.grid) for i in inner if i.acts == "at an instant"]
+        if not instants:
+            continue
+        others = final.search.evaluate(final.chosen.others(member))
+        gained = final.chosen.effects.evidence - others.effects.evidence
+        fit = task.fit((*added, *others.sized), final.base.gross)
+        if gained - float(np.log(instants).sum()) < memory_score(fit) + POLICY.log_odds_alike:
+            return member.effect.name
+    return None
 
 
 def chosen_rows(run: Run) -> Run:

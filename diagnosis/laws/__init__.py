@@ -8,6 +8,7 @@ formula is kept where it predicts at least as well as the curve (`search`).
 
 from matstd.diagnosis.laws.acceptance import HeldOut as HeldOut
 from matstd.diagnosis.laws.acceptance import Refusal as Refusal
+from matstd.diagnosis.laws.acceptance import memory_score as memory_score
 from matstd.diagnosis.laws.beginning import log_odds as log_odds
 from matstd.diagnosis.laws.estimates import REPEATED as REPEATED
 from matstd.diagnosis.laws.estimates import Estimate as Estimate

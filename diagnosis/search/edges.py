@@ -36,7 +36,7 @@ def unexplained_near_slip(
             value
             for scaled in effects
             for inner, value in inner_values(scaled.effect, touches)
-            if inner.acts == "at an instant"
+            if inner.acts == "at an instant" and not inner.clock
         ]
     )
     out = np.zeros(len(touches), dtype=bool)

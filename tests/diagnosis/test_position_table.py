@@ -7,11 +7,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from marks import slow
 
 from matstd.diagnosis.answer import diagnose
 from matstd.diagnosis.evidence import ScaledEffect
 from matstd.diagnosis.fit import Prior
-from matstd.diagnosis.search import DiagnosisTask
+from matstd.diagnosis.search import DiagnosisTask, searched
 from matstd.importers import one_axis_machine, positioning_run
 from matstd.importers.instruments import PositioningTest
 from matstd.twin.library import ordinary_model, parse_effect
@@ -126,3 +127,42 @@ def test_a_named_effect_predicts_at_least_as_well_as_the_table(name) -> None:
 def test_a_test_of_three_cycles_is_held_out_by_targets() -> None:
     assert len(np.unique(positioning("nothing", cycles=3).touches.pose)) == TARGETS
     assert len(np.unique(positioning("nothing", cycles=4).touches.pose)) == 4
+
+
+def in_cycles(added, cycles: int = 5) -> Run:
+    """A test of eleven targets with a reversal and something of its own at every reading."""
+    at = np.linspace(0.0, L, 11) + 4.0 * np.sin(np.arange(11) ** 2)
+    target = np.tile(np.concatenate([at, at[::-1]]), cycles)
+    sign, number = np.tile(np.repeat([1, -1], 11), cycles), np.arange(len(target))
+    found = 0.01 * target + 0.7 * sign + added(number / 22.0)
+    table = PositioningTest("X", target, found * UM, 1 + number // 22, sign, number)
+    return positioning_run(table, one_axis_machine("X", target), NOISE)
+
+
+@pytest.mark.parametrize(("instant", "size"), [(3.0, 5.0), *slow((1.3, -3.0), (2.5, 1.5))])
+def test_a_slip_in_a_table_without_times_is_no_growth(instant, size) -> None:
+    """The reflector slips once; warming and a growth from cycle to cycle are its rivals."""
+    noise = np.random.default_rng(4).normal(0.0, 0.3, 110)
+    found = diagnose(in_cycles(lambda done: size * (done > instant - 1e-9) + noise))
+    steps = {s.effect.name: s for s in found.steps if s.effect is not None}
+    assert set(steps) == {"jump(EXX,V_cycles_done_1)", "backlash(X)"}
+    numbers = {r.quantity: r for r in steps["jump(EXX,V_cycles_done_1)"].reported}
+    assert numbers["amplitude"].value == pytest.approx(size, abs=4.0 * numbers["amplitude"].u)
+    assert numbers["cycles_done"].value == pytest.approx(instant, abs=2.0 / 22.0)
+    # uniform between the two readings, as nothing in the run distinguishes more
+    assert numbers["cycles_done"].u == pytest.approx(1.0 / 22.0 / np.sqrt(12.0), rel=0.05)
+    assert found.fit.test_rms < 1.2 * NOISE
+
+
+def test_noise_that_wanders_is_no_slip() -> None:
+    """Of the same size, each reading with 0.95 of the error of the one before."""
+    rng, z = np.random.default_rng(1), np.zeros(110)
+    for i in range(1, 110):
+        z[i] = 0.95 * z[i - 1] + np.sqrt(1.0 - 0.95**2) * rng.normal()
+    run = in_cycles(lambda _: 0.9 * z)
+    jump = parse_effect("jump(EXX,V_cycles_done_1)", run.touches.chain)
+    candidates = [jump, parse_effect("backlash(X)", run.touches.chain)]
+    start = ordinary_model(run.touches.chain)
+    task = DiagnosisTask(run, start, Prior.of_effects(start.effects))
+    assert jump.name in {s.effect.name for s in searched(task, (), candidates).effects}
+    assert [e.name for e in diagnose(run, candidates=candidates).found] == ["backlash(X)"]

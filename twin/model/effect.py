@@ -95,11 +95,16 @@ class Inner(NamedTuple):
     # of a period, or of the waves of a turn, whose unit is "1", the axis over whose reading it
     # repeats; empty where it repeats over something else
     over: str = ""
+    clock: str = ""  # own column without `V_` of which an instant is a value; empty for the time
 
     @property
     def is_harmonic(self) -> bool:
         """Whether it counts the waves of a turn; else it is a length."""
         return bool(self.over) and self.unit == "1"
+
+    def clocked(self, touches: Touches) -> Array:
+        """What an instant is compared with at every touch, (N,)."""
+        return touches.value[self.clock] if self.clock else touches.time
 
     def frequency(self, value: Array) -> Array:
         """Spatial frequency of a periodic effect at values of it, 1/mm or 1/rad."""

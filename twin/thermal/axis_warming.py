@@ -2,28 +2,22 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Annotated, Self
+from typing import Self
 
 import numpy as np
 
-from matstd.twin.fields import Argument, LinearAxisName, Refuse, moving_linear_axes
+from matstd.twin.fields import LinearAxisName, Refuse, moving_linear_axes
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain
 from matstd.twin.model import Amounts, Declared, Inner, Kind, Parameter
 from matstd.twin.record import Touches
-from matstd.twin.thermal.drive_columns import OWN, PROGRESS, is_own, own_column
+from matstd.twin.thermal.drive_columns import OWN, Clock, clocks, own_column
 from matstd.twin.thermal.thermal_lag import LONGEST, SHORTEST, STEPS
 from matstd.twin.units import MINUTE, UM
 
 FASTEST, SLOWEST = 0.3, 1.0
 """Shortest time constant scanned in cycles, and longest in durations of the test: a slower one
 cannot be distinguished from a straight line, which has no final value."""
-
-
-def _clock_name(text: str, chain: Chain, refuse: Refuse) -> str:
-    if not is_own(text):
-        raise refuse("an own column V_name_unit that grows with time")
-    return text
 
 
 @dataclass(frozen=True)
@@ -39,8 +33,7 @@ class AxisWarming(Declared):
     """
 
     axis: LinearAxisName
-    # own column `V_name` that grows in step with time; empty for the time itself
-    clock: Annotated[str, Argument("V_column that grows with time", _clock_name)] = ""
+    clock: Clock = ""
     tau: float = 20.0 * MINUTE  # time constant, s, or in units of the clock
 
     kind, called = "axis-warming", "growth of the screw or scale of {axis} while it warms"
@@ -99,10 +92,8 @@ class AxisWarming(Declared):
 
 def propose(touches: Touches) -> Iterable[AxisWarming]:
     """Every linear axis that moved, by the time and by the order of a test without times."""
-    clocks = [""] if np.ptp(touches.since_start) > 0.0 else []
-    clocks += [OWN + PROGRESS] if PROGRESS in touches.value else []
     for axis in moving_linear_axes(touches):
-        for clock in clocks:
+        for clock in clocks(touches):
             yield AxisWarming(axis, clock, 1.0 if clock else AxisWarming.tau)
 
 

@@ -5,13 +5,15 @@ only, so the equation is integrated exactly for a drive that is straight between
 constant, for the spindle speed), over whatever times the touches were made at.
 """
 
+from typing import Annotated
 from weakref import WeakKeyDictionary
 
 import numpy as np
 
 from matstd.twin.errors import UnknownEffect
-from matstd.twin.fields import sensor_record, sensors, varies
+from matstd.twin.fields import Argument, Refuse, sensor_record, sensors, varies
 from matstd.twin.frames import Array
+from matstd.twin.machine import Chain
 from matstd.twin.model import Inner
 from matstd.twin.record import Touches
 from matstd.twin.units import T_REF
@@ -46,6 +48,22 @@ def drives(touches: Touches) -> list[str]:
         *speed,
         *(f"{OWN}{c}" for c, v in touches.value.items() if varies(v)),
     ]
+
+
+def _clock_name(text: str, chain: Chain, refuse: Refuse) -> str:
+    if not is_own(text):
+        raise refuse("an own column V_name_unit that grows with time")
+    return text
+
+
+Clock = Annotated[str, Argument("V_column that grows with time", _clock_name)]
+"""Own column `V_name` that grows in step with time; empty for the time itself."""
+
+
+def clocks(touches: Touches) -> list[str]:
+    """What counts the time of a run: its times, or the order of a test without times."""
+    own = [OWN + PROGRESS] if PROGRESS in touches.value else []
+    return ["", *own] if np.ptp(touches.since_start) > 0.0 else own
 
 
 def is_speed(drive: str) -> bool:
