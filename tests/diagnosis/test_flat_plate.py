@@ -6,7 +6,9 @@ from flat_plate import HEIGHT, lag, write_plate
 from marks import slow
 
 from matstd.diagnosis.answer import Verdict, diagnose
+from matstd.diagnosis.laws import learn_laws
 from matstd.report.words import verdict_sentence
+from matstd.twin.fields import travelling_axes
 from matstd.twin.files import read_run
 from matstd.twin.record import with_commanded
 from matstd.twin.units import UM
@@ -59,3 +61,18 @@ def test_repeats_show_the_noise(tmp_path):
     result = diagnose(read_run(write_plate(tmp_path, 5, noise=4.0, again=2)))
     assert result.verdict is Verdict.NONE
     assert len(result.repeat) == 0
+
+
+def test_a_step_over_a_plate_is_no_wave_of_the_axis_that_stands(tmp_path):
+    """Both axes of the plate travel; Z only follows the plane through the step.
+
+    The step was a wave of Z with a period of 3 µm, over the 7 µm by which that plane rises.
+    """
+    run = read_run(write_plate(tmp_path, 3, lambda x, y, t: 0.005 * (x > 0.0)))
+    assert np.ptp(with_commanded(run).touches.reading("Z")) > 5 * UM
+    assert travelling_axes(with_commanded(run).touches) == ["X", "Y"]
+    (law,) = learn_laws(run).laws
+    assert [driver.name for driver in law.law.drivers] == ["X"]
+    assert "periodic" not in {effect.kind for effect in diagnose(run).found}
+    leaning = read_run(write_plate(tmp_path / "leaning", 3, lambda x, y, t: 1e-3 * x))
+    assert travelling_axes(with_commanded(leaning).touches) == ["X", "Y", "Z"]

@@ -14,7 +14,7 @@ from matstd.twin.fields import (
     ComponentSymbol,
     Refuse,
     components_of,
-    moving_axes,
+    travelling_axes,
 )
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain
@@ -95,7 +95,7 @@ def propose(touches: Touches) -> Iterable[Coupling]:
     A bending guide turns what stands on it; its straightness that changes with another axis is
     seen through the lever of that turn and need not be proposed apart.
     """
-    axes = moving_axes(touches)
+    axes = travelling_axes(touches)
     for symbol in components_of(touches, axes):
         for other in axes:
             if symbol.is_angular and other != symbol.link:

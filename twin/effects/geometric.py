@@ -9,7 +9,13 @@ from typing import get_args
 import numpy as np
 from numpy.polynomial.chebyshev import chebvander
 
-from matstd.twin.fields import check_count, component_symbol, components_of, moving_axes, refusal
+from matstd.twin.fields import (
+    check_count,
+    component_symbol,
+    components_of,
+    refusal,
+    travelling_axes,
+)
 from matstd.twin.machine import Chain, Ranges, ShapeName, Symbol, shape
 from matstd.twin.model import Amounts, Declared, Effect, Kind, Parameter
 from matstd.twin.record import Touches
@@ -143,7 +149,7 @@ def propose(touches: Touches) -> Iterable[HigherOrder]:
     That has two of a linear axis and one of a rotary one; a degree that stood in both would have a
     size in neither.
     """
-    for symbol in components_of(touches, moving_axes(touches)):
+    for symbol in components_of(touches, travelling_axes(touches)):
         lowest = 2 if touches.chain.link(symbol.link).kind == "rotary" else 3
         yield higher_order(touches.chain, symbol, PROPOSED_DEGREE, lowest)
 

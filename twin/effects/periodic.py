@@ -11,8 +11,8 @@ from matstd.twin.fields import (
     check_count,
     component_symbol,
     components_of,
-    moving_axes,
     refusal,
+    travelling_axes,
 )
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain
@@ -285,7 +285,7 @@ def make(chain: Chain, arguments: Sequence[str]) -> Periodic | Harmonic:
 
 def propose(touches: Touches) -> Iterable[Periodic | Harmonic]:
     """Positioning of every linear axis that moved; every component of a rotary axis."""
-    chain, axes = touches.chain, moving_axes(touches)
+    chain, axes = touches.chain, travelling_axes(touches)
     for symbol in components_of(touches, axes):
         if chain.link(symbol.link).kind == "rotary":
             yield Harmonic(symbol)

@@ -17,10 +17,27 @@ from matstd.twin.machine import Chain, Family, Symbol
 from matstd.twin.record import Touches
 from matstd.twin.words import did_you_mean
 
+LEAST_TRAVEL = 20.0
+"""Ratio of the travel of an axis to the median deviation along it above which errors are
+functions of it. A plane through a step rises up to eight times the median deviation from it."""
+
 
 def moving_axes(touches: Touches) -> list[str]:
     """Programmed axes that stood at more than one reading, in chain order."""
     return [axis for axis in touches.chain.programmed_axes if np.ptp(touches.reading(axis)) > 1e-6]
+
+
+def travelling_axes(touches: Touches) -> list[str]:
+    """Those that travelled far enough for an error that is a function of their reading.
+
+    The commanded readings of a level plate follow the same deviations that are to be explained: a
+    step over X inclines them by micrometres, over which a wave of Z would imitate it.
+    """
+    if touches.commanded is None:
+        return moving_axes(touches)
+    off = np.median(np.abs(touches.q - touches.commanded), axis=0)
+    least = dict(zip(touches.chain.axes, LEAST_TRAVEL * off, strict=True))
+    return [axis for axis in moving_axes(touches) if np.ptp(touches.reading(axis)) > least[axis]]
 
 
 def moving_linear_axes(touches: Touches) -> list[str]:

@@ -14,6 +14,7 @@ from typing import Literal
 import numpy as np
 
 from matstd.twin.errors import UnknownEffect
+from matstd.twin.fields import travelling_axes
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain, table_to_tool
 from matstd.twin.record import Touches
@@ -97,7 +98,7 @@ def drivers(touches: Touches) -> list[Driver]:
     chain = touches.chain
     is_switched = touches.spindle_rpm is not None and np.ptp(touches.spindle_rpm) > 0.0
     times = TIMES if is_switched else TIMES[:-1]
-    names = [*chain.programmed_axes, *(LAST + a for a in chain.programmed_axes), *times]
+    names = [*travelling_axes(touches), *(LAST + a for a in chain.programmed_axes), *times]
     names += [SENSOR + s for s in touches.temperature]
     names += [TREND + SENSOR + s for s in touches.temperature]
     names += [OWN + column for column in touches.value]
