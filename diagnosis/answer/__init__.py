@@ -6,6 +6,7 @@ shown, `next_measurement` touches that distinguish look-alikes, `proof` compares
 """
 
 from matstd.diagnosis.answer.ambiguity import ConfusionClass as ConfusionClass
+from matstd.diagnosis.answer.ambiguity import acts_as_instrument as acts_as_instrument
 from matstd.diagnosis.answer.candidates import Candidate as Candidate
 from matstd.diagnosis.answer.comparison import Comparison as Comparison
 from matstd.diagnosis.answer.comparison import GroupResidual as GroupResidual

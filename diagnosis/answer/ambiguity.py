@@ -20,8 +20,8 @@ from matstd.diagnosis.evidence import (
 from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.search import explained, follows_driver, is_series, refined
 from matstd.twin.frames import Array
-from matstd.twin.model import Effect, original_of, traits
-from matstd.twin.record import Touches
+from matstd.twin.model import Effect, columns, original_of, traits
+from matstd.twin.record import Instrument, Touches
 from matstd.twin.thermal import drives
 
 LISTED_FAR = 2
@@ -83,6 +83,21 @@ class ConfusionClass:
             rivals=tuple(r for r in self.rivals if r.effect.name not in names),
             distinguished=tuple(r for r in self.distinguished if r.effect.name not in names),
         )
+
+
+def acts_as_instrument(effect: Effect, touches: Touches) -> bool:
+    """Whether an instrument beside the machine that drifts or slips reads the same as an effect.
+
+    So it is of an instrument that reads in one direction, where the effect would be the same with
+    every axis at one reading, reached without a direction: what depends on neither follows the time
+    or a drive, as the instrument may, too.
+    """
+    is_machine = touches.instrument.reads_by_the_axes or touches.instrument is Instrument.CMM
+    if is_machine or np.ptp(touches.normal, axis=0).max() > 1e-6:
+        return False
+    middle = np.broadcast_to(np.median(touches.q, axis=0), touches.q.shape)
+    still = replace(touches, q=middle, commanded=None, approach=np.zeros_like(touches.approach))
+    return bool(np.allclose(columns([effect], still), columns([effect], touches), rtol=1e-6))
 
 
 def plausibility(effects: Sequence[Effect], touches: Touches) -> dict[str, float]:

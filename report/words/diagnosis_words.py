@@ -21,6 +21,7 @@ from matstd.report.numbers import (
 from matstd.report.words.remark_words import memory_words
 from matstd.twin.numbers import rms
 from matstd.twin.record import Run
+from matstd.twin.thermal import CYCLE, PROGRESS
 from matstd.twin.units import UM, URAD
 from matstd.twin.words import listed
 
@@ -30,7 +31,6 @@ _WORDS = {
     "length": "correlation length",
     "tau": "time constant",
     "cycles": "time constant in cycles",
-    "step": "per step of",
     "reversal_on_average": "reversal on average",
     "reversal_at_most": "reversal at most",
 }
@@ -79,11 +79,11 @@ def values(step: Step) -> list[tuple[str, str]]:
 
     Many coefficients are replaced by the numbers that sum them up.
     """
-    return number_words(step.reported)
+    return number_words(step.reported, step.name)
 
 
-def number_words(reported: Sequence[Reported]) -> list[tuple[str, str]]:
-    """The same from the numbers that a model file keeps."""
+def number_words(reported: Sequence[Reported], name: str) -> list[tuple[str, str]]:
+    """The same from the numbers that a model file keeps of an effect of this name."""
     sines = [r for r in reported if r.quantity.startswith(SINE_PREFIX)]
     shown = sorted(reported, key=lambda r: _ORDER.index(r.role))
     # what sums up the coefficients, or is reported in place of final values beyond the run
@@ -92,8 +92,22 @@ def number_words(reported: Sequence[Reported]) -> list[tuple[str, str]]:
         shown = [r for r in shown if r.role is not Role.COEFFICIENT]
     if is_curve:  # its assumed smoothness is in the files
         shown = [r for r in shown if r.quantity != "length"]
-    out = [named_value(r) for r in shown if (r.quantity, r.value) != ("step", 1.0)]
+    per = next((_per(r.value, name) for r in shown if r.quantity == "step"), "")
+    out = [
+        (word, f"{value}{per}" if word == "amplitude" else value)
+        for word, value in (named_value(r) for r in shown if r.quantity != "step")
+    ]
     return [*out, *([_sine_words(sines)] if sines else [])]
+
+
+def _per(step: float, name: str) -> str:
+    """Of what change of its drive an amplitude is: ` per cycle`, or ` per step of 10`.
+
+    The unit of a user's column is in its name.
+    """
+    if any(column in name for column in (CYCLE, PROGRESS)):
+        return " per cycle" if step == 1.0 else f" per {step:g} cycles"
+    return f" per step of {step:g}"
 
 
 def _sine_words(sines: Sequence[Reported]) -> tuple[str, str]:
@@ -239,7 +253,9 @@ def learnt_lines(fit: Fit, numbers: Mapping[str, Sequence[Reported]]) -> list[st
         f"The model was estimated from these rows: fitted {rms} µm, held out {held_out} µm, "
         f"chi-square per degree of freedom {chi2}."
     )
-    each = {name: ", ".join(" ".join(v) for v in number_words(r)) for name, r in numbers.items()}
+    each = {
+        name: ", ".join(" ".join(v) for v in number_words(r, name)) for name, r in numbers.items()
+    }
     chain = fit.run.touches.chain
     return [first, *(f"{words_of_name(name, chain)}: {w}" for name, w in each.items() if w)]
 

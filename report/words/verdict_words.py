@@ -3,7 +3,7 @@
 import math
 from collections.abc import Sequence
 
-from matstd.diagnosis.answer import Diagnosis, Step, Verdict
+from matstd.diagnosis.answer import Diagnosis, Step, Verdict, acts_as_instrument
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.laws import Learning
 from matstd.diagnosis.policy import POLICY
@@ -110,7 +110,16 @@ def _places(diagnosis: Diagnosis, step: Step) -> list[float]:
 
 def _added(diagnosis: Diagnosis, step: Step, most: int) -> str:
     """An effect with its leading numbers and its rivals."""
-    clauses = [sizes(step, most) if most else "", _alike(step, _places(diagnosis, step))]
+    touches = diagnosis.run.touches
+    instrument = ""
+    if step.effect is not None and acts_as_instrument(step.effect, touches):
+        words = touches.instrument.value.replace("-", " ")
+        instrument = f"the {words} itself may be the cause: it is the same at every target"
+    clauses = [
+        sizes(step, most) if most else "",
+        _alike(step, _places(diagnosis, step)),
+        instrument,
+    ]
     return class_words(step, [clause for clause in clauses if clause])
 
 

@@ -14,6 +14,7 @@ from matstd.diagnosis.evidence import ScaledEffect
 from matstd.diagnosis.files import model_text, read_model
 from matstd.diagnosis.fit import Prior
 from matstd.diagnosis.search import DiagnosisTask
+from matstd.report.words import values
 from matstd.twin.library import ordinary_model, parse_effect
 from matstd.twin.record import Run
 from matstd.twin.units import MINUTE, UM
@@ -55,6 +56,7 @@ def test_a_lag_after_an_own_column_is_found_with_its_size(run, tmp_path) -> None
     assert reported["tau_min"].u < 3.0
     step = result.found[0].tuning["step"]
     assert step == 10.0
+    assert values(result.steps[-1])[0][1].endswith(" µm per step of 10")
     assert abs(reported["amplitude_um"].value - PER_BAR * step) < 3.0 * reported["amplitude_um"].u
     (tmp_path / "model.toml").write_text(model_text(result.fit, "run.csv"), encoding="utf-8")
     saved = read_model(tmp_path / "model.toml")

@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 from marks import slow
 
-from matstd.diagnosis.answer import diagnose
+from matstd.diagnosis.answer import acts_as_instrument, diagnose
 from matstd.diagnosis.evidence import ScaledEffect
 from matstd.diagnosis.fit import Prior
 from matstd.diagnosis.search import DiagnosisTask, searched
 from matstd.importers import one_axis_machine, positioning_run
 from matstd.importers.instruments import PositioningTest
 from matstd.twin.library import ordinary_model, parse_effect
-from matstd.twin.record import Run
+from matstd.twin.record import Instrument, Run
 from matstd.twin.units import UM
 
 L = 500.0
@@ -152,6 +152,12 @@ def test_a_slip_in_a_table_without_times_is_no_growth(instant, size) -> None:
     # uniform between the two readings, as nothing in the run distinguishes more
     assert numbers["cycles_done"].u == pytest.approx(1.0 / 22.0 / np.sqrt(12.0), rel=0.05)
     assert found.fit.test_rms < 1.2 * NOISE
+    touches = found.run.touches
+    assert [acts_as_instrument(e, touches) for e in found.found] == [
+        e.kind == "jump" for e in found.found
+    ]
+    probed = replace(touches, instrument=Instrument.TOUCH_PROBE)
+    assert not any(acts_as_instrument(e, probed) for e in found.found)
 
 
 def test_noise_that_wanders_is_no_slip() -> None:

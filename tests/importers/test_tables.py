@@ -1,6 +1,7 @@
 """Foreign tables made runs: layouts, units, decimal marks, and above all signs."""
 
 import importlib
+import re
 from pathlib import Path
 
 import numpy as np
@@ -21,6 +22,7 @@ from matstd.importers.arms import arm_from_dh
 from matstd.importers.instruments import PositioningTest
 from matstd.importers.points import linear_machine, points_run, read_points
 from matstd.importers.sheets import bare, unit_of_column
+from matstd.report.words import verdict_sentence
 from matstd.twin.errors import BadFile
 from matstd.twin.files import read_run
 from matstd.twin.library import ordinary_model, parse_effect
@@ -131,6 +133,10 @@ def test_an_axis_that_moves_from_cycle_to_cycle(tmp_path):
     assert set(reported) == {"follows(EXX,cycle_1)", "backlash(X)"}
     for name, true in (("follows(EXX,cycle_1)", 0.9), ("backlash(X)", 1.5)):
         assert abs(reported[name].value) == pytest.approx(true, abs=4.0 * reported[name].u)
+    # a growth that no reading changes is of the axis or of the laser; a reversal is no laser
+    said = verdict_sentence(result)
+    assert re.search(r"amplitude 0\.9\d* ± [\d.]+ µm per cycle; the laser itself may be", said)
+    assert re.search(r"\(amplitude 1\.[45]\d* ± [\d.]+ µm\) \[backlash", said)
 
 
 def test_a_screw_that_warms_over_the_cycles(tmp_path):

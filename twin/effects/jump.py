@@ -46,7 +46,7 @@ class Jump(Declared):
     clock: Clock = ""
     instant: float = 0.0  # s, or in units of the clock
 
-    kind, called = "jump", "jump of {symbol.link}, as of lost counts or a slip of the instrument"
+    kind, called = "jump", "jump of {symbol.link}, as of lost counts"
     usual = (10 * UM, 30 * URAD)
 
     def amounts(self, touches: Touches) -> Amounts:
