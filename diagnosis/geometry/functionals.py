@@ -25,6 +25,7 @@ from matstd.diagnosis.geometry.quantities import (
     Quantity,
     effects_of_readings,
     geometric_effects,
+    peak_to_valley,
 )
 from matstd.twin.frames import Array
 from matstd.twin.machine import LETTERS, Chain, Family, Link, tip
@@ -47,7 +48,8 @@ def functionals(fit: Fit, theta: Array) -> Iterator[Functional]:
 
     Args:
         fit: Fit of a model with component and location errors; others are no geometry.
-        theta: Parameters (P,) at which the peaks and valleys of curves are looked for.
+        theta: Parameters (P,) at which the peaks and valleys are looked for between which curves of
+            several states are compared.
     """
     chain = fit.model.chain
     lines = {axis: _Line(fit, axis) for axis in chain.linear_axes if _is_probed(fit, axis)}
@@ -123,12 +125,6 @@ def _displacements(fit: Fit, poses: Touches) -> Array:
     return out
 
 
-def _peak_to_valley(curve: Array, theta: Array) -> Array:
-    """Weights (P,) of the largest less the smallest value of a curve (N, P)."""
-    values = curve @ theta
-    return np.asarray(curve[int(np.argmax(values))] - curve[int(np.argmin(values))])
-
-
 class _Line:
     """Displacements along a line parallel to one linear axis, per unit of every parameter."""
 
@@ -169,8 +165,9 @@ class _Line:
                 symbol=f"E{LETTERS[i]}{self.axis}",
                 axes=(self.axis,),
                 unit="mm",
-                weights=_peak_to_valley(curve, theta),
+                weights=peak_to_valley(curve, theta),
                 lever=1.0,
+                curve=curve,
             )
         lever = _longest_other(self.poses.chain, self.axis)
         for component, curve in sorted(_curves(self.fit, self.poses, self.link).items()):
@@ -180,8 +177,9 @@ class _Line:
                     symbol=f"E{LETTERS[component]}{self.axis}",
                     axes=(self.axis,),
                     unit="rad",
-                    weights=_peak_to_valley(curve, theta),
+                    weights=peak_to_valley(curve, theta),
                     lever=lever,
+                    curve=curve,
                 )
 
 
@@ -259,7 +257,7 @@ def _rotary(fit: Fit, theta: Array, axis: str) -> Iterator[Functional]:
         yield from _zero(fit, link, reach)
     for component, curve in sorted(_curves(fit, _along_axis(fit, axis), link).items()):
         is_angle = component >= 3
-        weights = _peak_to_valley(curve, theta)
+        weights = peak_to_valley(curve, theta)
         if not np.any(weights):  # nothing that was measured feels it
             continue
         yield Functional(
@@ -269,6 +267,7 @@ def _rotary(fit: Fit, theta: Array, axis: str) -> Iterator[Functional]:
             unit=unit[is_angle],
             weights=weights,
             lever=reach if is_angle else 1.0,
+            curve=curve,
         )
 
 

@@ -103,7 +103,7 @@ def geometry_rows(fit: Fit, before: Prior | None = None) -> tuple[GeometryRow, .
     theta = _machine(fit)
     has_course = bool(changed_since(fit.model))
     states = [state(fit.model, r) for r in range(len(fit.run.touches.runs) if has_course else 1)]
-    # peaks are chosen between all states, so that choosing them favours none
+    # what changed is taken between the peaks of all states, so that choosing them favours none
     known = [L @ theta for L in states] + ([] if before is None else [_padded(before, len(theta))])
     stated, quantities = stated_sizes(fit), functionals(fit, np.mean(known, axis=0))
     return tuple(_row(fit, one, states, before, stated) for one in quantities)
@@ -145,11 +145,16 @@ def _machine(fit: Fit) -> Array:
 def _row(
     fit: Fit, one: Functional, states: Sequence[Array], before: Prior | None, stated: Array
 ) -> GeometryRow:
-    """One quantity of the last state, with its course over all of them."""
+    """One quantity of the last state, with its course over all of them.
+
+    A peak to valley is that of the state itself, and has no sign. A change is that between readings
+    which are the same in all states: a curve that turned over has the same height as before.
+    """
     machine = len(one.weights)
     every = np.stack([one.weights @ L for L in states])
     sd = float(np.linalg.norm(one.weights @ fit.prior.root[:machine, :machine]))
-    values = [_of(fit, w) for w in every]
+    theta = _machine(fit)
+    values = [_of(fit, one.at(L @ theta) @ L) for L in states]
     is_known = [e.u * POLICY.determined_ratio < sd for e in values]
     usual = _usual(fit, one) if one.quantity in LOCATIONS else None
     of_all = expected_size(fit, one.weights, stated)
@@ -164,11 +169,11 @@ def _row(
         _of(fit, every[i + 1] - every[i]) if is_known[i] and is_known[i + 1] else None
         for i in range(len(every) - 1)
     ]
-    earlier = None if before is None else _estimate(before, one.weights)
-    change = None
-    if earlier is not None:
-        u = float(np.hypot(values[-1].u, earlier.u))
-        change = Estimate(values[-1].value - earlier.value, u)
+    earlier = change = since_model = None
+    if before is not None:
+        earlier = _estimate(before, one.at(_padded(before, machine)))
+        there = _estimate(before, one.weights)
+        since_model, change = (_less(_of(fit, w), there) for w in (every[0], every[-1]))
     elif steps and is_known[0]:
         earlier, change = values[0], _of(fit, every[-1] - every[0])
     return GeometryRow(
@@ -183,6 +188,7 @@ def _row(
         shared_with=() if is_known[-1] else _shared_with(fit, every[-1]),
         before=earlier,
         change=change,
+        since_model=since_model,
         course=course if steps else (),
         steps=tuple(steps),
         usual=usual,
@@ -207,6 +213,11 @@ def _of(fit: Fit, weights: Array) -> Estimate:
     part = slice(len(weights))
     value = float(weights @ fit.theta[part])
     return Estimate(value, float(np.sqrt(weights @ fit.covariance[part, part] @ weights)))
+
+
+def _less(one: Estimate, other: Estimate) -> Estimate:
+    """One estimate less an independent one."""
+    return Estimate(one.value - other.value, float(np.hypot(one.u, other.u)))
 
 
 def _padded(known: Prior, count: int) -> Array:

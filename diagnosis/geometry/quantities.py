@@ -4,6 +4,8 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from enum import Enum
 
+import numpy as np
+
 from matstd.diagnosis.fit import Fit
 from matstd.twin.frames import Array
 from matstd.twin.laws import law_of
@@ -36,6 +38,18 @@ class Functional:
     unit: str
     weights: Array
     lever: float
+    # of a peak to valley the curve (N, P), of which the weights are one reading less another
+    curve: Array | None = None
+
+    def at(self, theta: Array) -> Array:
+        """Weights (P,) of a peak to valley between the peak and valley of these parameters."""
+        return self.weights if self.curve is None else peak_to_valley(self.curve, theta)
+
+
+def peak_to_valley(curve: Array, theta: Array) -> Array:
+    """Weights (P,) of the largest less the smallest value of a curve (N, P)."""
+    values = curve @ theta
+    return np.asarray(curve[int(np.argmax(values))] - curve[int(np.argmin(values))])
 
 
 def is_geometry(effect: Effect) -> bool:

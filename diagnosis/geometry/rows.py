@@ -33,7 +33,10 @@ class GeometryRow:
     # parameters that it cannot be separated from, where it is not determined
     shared_with: tuple[str, ...] = ()
     before: Estimate | None = None  # the same in an earlier model, or in the first of several runs
-    change: Estimate | None = None  # now less before; None without a before
+    # now less before, of a peak to valley between readings that are the same in both; None without
+    # a before
+    change: Estimate | None = None
+    since_model: Estimate | None = None  # the same of the first run less an earlier model
     # the same in every run, in their order, where there are several; None in a run that does not
     # determine it
     course: tuple[Estimate | None, ...] = ()
@@ -84,11 +87,8 @@ class GeometryRow:
     @property
     def has_changed_since_model(self) -> bool:
         """Whether the first run differs from an earlier model by more than chance."""
-        first = self.course[0] if self.course else self.estimate if self.is_determined else None
-        if first is None or self.before is None:
-            return False
-        u = float(np.hypot(first.u, self.before.u))
-        return is_clear(Estimate(first.value - self.before.value, u))
+        is_known = self.course[0] is not None if self.course else self.is_determined
+        return is_known and is_clear(self.since_model)
 
     def has_changed_into(self, run: int) -> bool:
         """Whether it differs from the run before by more than chance; the first run is 0."""

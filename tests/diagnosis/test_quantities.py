@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from made_up import gauge_touches, made_up
 
-from matstd.diagnosis.fit import Role, fit_run, reported
+from matstd.diagnosis.fit import Prior, Role, fit_run, reported
 from matstd.diagnosis.geometry import Quantity, geometry_rows, learnt_geometry
 from matstd.twin.library import ordinary_model, parse_effect
 from matstd.twin.machine import make_chain
@@ -167,3 +167,33 @@ def test_play_and_a_compliance_of_two_sides_are_distinguished_from_the_mean_comp
     for name, true in truth.items():
         assert numbers[name].role is Role.SIZE
         assert abs(numbers[name].value - true) < 3.5 * numbers[name].u, name
+
+
+def test_a_peak_to_valley_has_no_sign_and_a_curve_that_turned_over_has_changed() -> None:
+    """A bow of 16 µm against one of -16 µm: its height before and now, and up to twice between."""
+    t = in_a_corner(3)
+    model = ordinary_model(t.chain)
+    bow = parse_effect("geometric(EYX,parabolic)", t.chain)
+    rng = np.random.default_rng(6)
+    fits = []
+    for sign in (-1.0, 1.0):
+        moved = Model(t.chain, (bow,)).deviation(t, np.array([sign * 40.0 * UM]))
+        run = Run(t, moved + rng.normal(0.0, U, len(t)), np.full(len(t), U))
+        fits.append(fit_run(run, model))
+    first, second = fits
+    count = len(model.parameters)
+    before = Prior.of_estimates(first.theta[:count], first.covariance[:count, :count])
+    rows = geometry_rows(second, before)
+    spans = [r for r in rows if r.quantity in (Quantity.STRAIGHTNESS, Quantity.ANGULAR)]
+    assert len(spans) > 6
+    assert all(r.estimate.value >= 0.0 and r.before.value >= 0.0 for r in spans)
+    (row,) = (r for r in spans if r.symbol == "EYX")
+    q = np.linspace(*(f(t.reading("X")) for f in (np.min, np.max)), 21)
+    low, high = t.chain.link("X").range
+    curve = 40.0 * UM * np.polynomial.Chebyshev.basis(2)((2.0 * q - low - high) / (high - low))
+    height = np.ptp(curve - np.polyval(np.polyfit(q, curve, 1), q))
+    for one in (row.before, row.estimate):
+        assert one.value == pytest.approx(height, abs=4.0 * one.u)
+    assert height < abs(row.change.value) < 2.0 * height + 4.0 * row.change.u
+    assert row.has_changed
+    assert row.has_changed_since_model
