@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from matstd.diagnosis.laws import Estimate, Learning, amplitudes, curve_of, places
-from matstd.report.laws.law_words import amplitude_words, formula_words, place_words
+from matstd.report.laws.law_words import amplitude_words, formula_words, place_words, size_words
 from matstd.twin.laws import Driver, Law
 from matstd.twin.units import UM, URAD
 
@@ -50,9 +50,9 @@ class {name}(Declared):
 
 OF_ITS_RUN = '    belongs_to="run",  # its driver was not recorded: other runs need not repeat it\n'
 
-CURVE_KNOTS, CURVE_FLANKS = 41, 3.0
-"""Knots of a table that stands for a curve without a formula, and correlation lengths by which it
-goes beyond the domain: there it has died away."""
+CURVE_KNOTS, CURVE_FLANKS = 6, 3.0
+"""Knots in a correlation length of a table that stands for a curve without a formula, and lengths
+by which it goes beyond the domain: there it has died away."""
 
 
 def effect_text(learning: Learning, run: str) -> str:
@@ -85,6 +85,8 @@ def _class(learning: Learning, law: Law, kind: str, run: str) -> str:
     entry = f', "{law.carrier.name}"' if is_entry else ""
     units = [f"{law.place_names[i]}: {law.units[i]}" for i in _free(law)]
     typical = "; ".join(amplitude_words(law, a) for a in amplitudes(learning, law)[:3])
+    if law.is_curve_alone:
+        typical = size_words(learning, law)
     return CLASS.format(
         name=name,
         summary=f"{formula_words(law)}.",
@@ -148,8 +150,9 @@ def _parameters(learning: Learning, law: Law) -> list[Estimate]:
     found = amplitudes(learning, law)
     if not law.is_curve_alone:
         return found
-    size = max(abs(a.value) for a in found)
-    unit = law.carrier.unit
+    driver = next(f.driver for f in law.factors if f.shape.word == "curve")
+    curve, _ = curve_of(learning, law, driver, driver.values(learning.after.run.touches))
+    size, unit = float(np.abs(curve).max()), law.carrier.unit
     return [Estimate(word or "amplitude", size, None, unit) for word in law.carrier.words]
 
 
@@ -244,10 +247,11 @@ def _table(learning: Learning, law: Law, k: int, x: str) -> str:
     """A curve without a formula as a table to be interpolated in, its largest value 1."""
     low, high, length, _ = law.places[law.parts[k][1]]
     flank = CURVE_FLANKS * length * (high - low)
+    count = 1 + round(CURVE_KNOTS * (1.0 / length + 2.0 * CURVE_FLANKS))
     low, high = low - flank, high + flank
-    y, _ = curve_of(learning, law, law.factors[k].driver, np.linspace(low, high, CURVE_KNOTS))
+    y, _ = curve_of(learning, law, law.factors[k].driver, np.linspace(low, high, count))
     y = y / max(float(np.abs(y).max()), 1e-300)
-    knots = f"np.linspace({low:.6g}, {high:.6g}, {CURVE_KNOTS})"
+    knots = f"np.linspace({low:.6g}, {high:.6g}, {count})"
     values = [f"{v:.3f}" for v in y]
     rows = [", ".join(values[i : i + 10]) for i in range(0, len(values), 10)]
     table = ",\n".join(f"{' ' * 12}{row}" for row in rows)
