@@ -175,6 +175,7 @@ SEEDED: dict[str, tuple[Change, str]] = {
     "probing too fast": (swap("F250", "F2500"), "F1 to F1000"),
     "retract beyond the start": (swap("MB+5.0000", "MB+9.0000"), "MB between 1 mm and the path"),
     "status not looked at": (drop("CALL LBL 90"), "FN 12 on the status"),
+    "a move before the status": (insert(RETRACT, "CALL LBL 90"), "FN 12 on the status"),
     "status of another parameter": (swap("Q1613 LT", "Q1612 LT"), "the status"),
     "result elsewhere": (swap("4.1 Q1610", "4.1 Q1620"), "FN 12 on the status"),
     "result in the builder's range": (swap("4.1 Q1610", "4.1 Q1410"), "a free parameter"),
