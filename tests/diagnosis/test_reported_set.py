@@ -189,7 +189,7 @@ def test_every_figure_can_be_had_again_from_the_model(folder, tmp_path, capsys, 
     saved = read_model(model)
     numbers = saved.reported[step["effect"]]
     assert {n.name: n.value for n in numbers} == pytest.approx(step["parameters"], rel=1e-5)
-    for words in number_words(numbers):
+    for words in number_words(numbers, step["effect"]):
         assert " ".join(words) in shown
 
 
