@@ -74,13 +74,17 @@ def significant_effects(
     """The reported set: every member beyond chance and its size beyond its uncertainty.
 
     A search weighs an effect beside a machine as it is expected to be; a size that rests on the
-    touches alone may be nothing, and such an effect is not reported. The weakest goes first.
+    touches alone may be nothing, and such an effect is not reported. The weakest goes first. The
+    last one stays where chance did not make it: then the run does not decide between it and errors
+    of the machine that are larger than expected.
     """
     while True:
         tested = reported_set(final)
         steps = _steps(task, added, tested, final.base.gross)
         weak = tested.open_driver or weakest(steps[1 + len(added) :], final.is_weighed)
-        if weak is None:
+        found = steps[1 + len(added) :]
+        is_open = tested.open_driver is None and len(found) == 1 and _is_beyond_chance(found[0])
+        if weak is None or is_open:
             return tested, tuple(_determined(step) for step in steps)
         final = without(tested.state, weak)
 
@@ -204,6 +208,11 @@ def weakest(steps: Sequence[Step], is_weighed: bool) -> str | None:
         if worth < least:
             out, least = step.name, worth
     return out
+
+
+def _is_beyond_chance(step: Step) -> bool:
+    """Whether something acts, be it this effect or not."""
+    return step.p_value < POLICY.false_alarm and _is_possible(step)
 
 
 def _is_possible(step: Step) -> bool:

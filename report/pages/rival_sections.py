@@ -209,7 +209,7 @@ def _without_plan(result: Diagnosis) -> str:
     steps = result.steps[1:]
     if result.withdrawn:
         return "Touches that would distinguish the learnt law from its rivals."
-    if result.verdict is Verdict.UNDECIDED:
+    if result.verdict is Verdict.UNDECIDED and not result.found:
         return "Repeat the touches that the verdict names."
     if result.verdict is Verdict.UNEXPLAINED and result.depends_on:
         found = result.depends_on[0].structure

@@ -8,6 +8,11 @@ from matstd.report.numbers import plural
 
 def diagnosis_step(result: Diagnosis, title: str, is_saved: bool = False) -> str:
     """After a diagnosis; `is_saved` where the model file has what was found."""
+    if result.verdict is Verdict.UNDECIDED and result.found:
+        return (
+            "Probe at further readings of the axes and diagnose both runs together; they decide "
+            "between the effect and errors of the machine that do the same here."
+        )
     if result.verdict is Verdict.UNDECIDED:
         what = plural(len(result.repeat), "touch") if len(result.repeat) else "some touches"
         return f"Repeat {what}; their scatter decides whether the residual is noise."

@@ -52,6 +52,11 @@ def diagnosis_meaning(result: Diagnosis) -> str:
             "Something acts on the machine that no effect of the library accounts for. "
             f"Predictions are off by {after} rms, and a compensation by this model leaves that."
         )
+    if result.found:
+        return (
+            "This run does not decide whether something acts on the machine that the starting "
+            f"model lacks. Without it predictions are off by {before} rms; with it {touched}."
+        )
     return (
         "This run does not decide whether what remains is noise or an effect: the noise would have "
         "to be far above what is stated, and no touch is repeated."

@@ -169,9 +169,11 @@ def _verdict_alone(diagnosis: Diagnosis) -> str:
     if diagnosis.verdict is Verdict.UNEXPLAINED:
         return _unexplained_sentence(diagnosis, [*named, *found])
     if diagnosis.verdict is Verdict.UNDECIDED and doubtful:
+        names = "; ".join(_added(diagnosis, s, 1) for s in others if s.effect)
         return (
-            f"This run cannot decide: {_plural(doubtful)} would reduce the error, but none is "
-            f"certain by itself. With {them} {_fall(diagnosis)}.{also}"
+            f"This run cannot decide: {names} would reduce the error, but "
+            f"{'it is not' if doubtful == 1 else 'none is'} certain by itself. "
+            f"With {them} {_fall(diagnosis)}.{also}"
         )
     if diagnosis.verdict is Verdict.UNDECIDED:
         return _undecided_sentence(diagnosis)

@@ -1,9 +1,15 @@
 """A serial arm under a tracker: joints that give way, beside everything else it does wrong."""
 
 import numpy as np
+import pytest
 from made_up import ARM, arm_poses
+from marks import slow
 
-from matstd.diagnosis.answer import diagnose
+from matstd.diagnosis.answer import Verdict, diagnose
+from matstd.diagnosis.policy import POLICY
+from matstd.report.run_view import diagnosis_step
+from matstd.report.verdict import diagnosis_meaning
+from matstd.report.words import verdict_sentence
 from matstd.twin.library import ordinary_model, parse_effect, proposals
 from matstd.twin.model import Model
 from matstd.twin.record import Run
@@ -37,3 +43,25 @@ def test_joints_that_sag_are_found_and_none_beside_them() -> None:
 def test_a_stiff_arm_has_no_joints_that_sag() -> None:
     run = run_of({})
     assert not diagnose(run, candidates=proposals(run.touches, ("joint-sag", "drift"))).found
+
+
+@pytest.mark.parametrize(
+    ("weight", "verdict"),
+    [(0.0, Verdict.NONE), (0.034, Verdict.UNDECIDED), *slow((0.06, Verdict.MISSING))],
+)
+def test_a_sag_that_a_zero_may_be_is_undecided(weight, verdict) -> None:
+    """Chance does not make it, and yet its size is within what wrong zeros of the joints leave."""
+    run = run_of({"B": [weight * URAD] * 4}, 3)
+    found = diagnose(run, candidates=[parse_effect("joint-sag(B)", ARM)])
+    assert found.verdict is verdict
+    if verdict is not Verdict.UNDECIDED:
+        return
+    (step,) = found.steps[1:]
+    assert step.p_value < POLICY.false_alarm
+    assert step.worth < POLICY.significant_ratio
+    assert found.parts.headline == ()
+    said = verdict_sentence(found)
+    assert said.startswith("This run cannot decide: sag of joint B")
+    assert "[joint-sag(B)] would reduce the error, but it is not certain by itself" in said
+    assert "further readings" in diagnosis_step(found, "run.csv")
+    assert "does not decide whether something acts" in diagnosis_meaning(found)

@@ -93,6 +93,8 @@ def _next(args: argparse.Namespace, found: Diagnosis) -> tuple[str, str]:
         return words, f"after measuring {plan} into new.csv"
     if found.verdict is Verdict.UNDECIDED:
         words = _again(args, runs=("again.csv",))
+        if found.found:
+            return words, "after another run with other readings of the axes"
         return words, "after the same programs have run again: repeated touches show the noise"
     tool = np.median(found.run.touches.length)
     tables = Path(args.output).parent / "tables"
