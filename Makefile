@@ -1,7 +1,7 @@
 # All set-up on a fresh machine with Python 3.11 or later, git and make:
 #   make design   the main job, into out/hsm600u
 #   make test     the tests
-#   make mutants  whether the tests notice 200 wrong lines, an hour or two
+#   make mutants  whether the tests notice 200 wrong lines, two hours
 #   make api      the pages of the Python interface, docs/api.md and out/api
 PYTHON ?= python3
 BIN := .venv/bin
@@ -35,6 +35,7 @@ benchmark: .venv/installed
 	$(BIN)/python -m benchmarks
 
 mutants: .venv/installed
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e ".[mutants]"
 	$(BIN)/python benchmarks/mutants.py
 
 api: .venv/installed

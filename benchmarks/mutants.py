@@ -1,8 +1,8 @@
 """Would the tests notice?   python benchmarks/mutants.py     (make mutants)
 
-Makes 200 random lines of the production code wrong, one at a time, and runs the test files that
-import the module of the line most directly, those of its room and short ones first, until one test
-fails. Prints the share of wrong lines that a test noticed and every line that none did.
+Makes 200 random lines of the production code wrong, one at a time, and runs the tests that execute
+the line, as one run of all tests under coverage.py recorded, until one fails. Prints the share of
+wrong lines that a test noticed and every line that none did.
 
 A wrong line has one change: a comparison or condition turned round, + for -, * for /, a sign, `and`
 for `or`, a number (n + 1, or twice a fraction), True for False, a call left out. Each is drawn from
@@ -20,11 +20,15 @@ import sys
 import tempfile
 import tomllib
 from collections import Counter, defaultdict
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
+from hashlib import sha256
 from pathlib import Path
 from queue import Queue
 from typing import NamedTuple
+from xml.etree import ElementTree
+
+from coverage import CoverageData
 
 ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT / "tests"))
@@ -33,9 +37,14 @@ from check_types import link_folder  # noqa: E402
 
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 ROOMS: dict[str, str] = PROJECT["tool"]["setuptools"]["package-dir"]
-MOST_FILES = 8
-"""Test files that one wrong line is shown to: the share that is printed is a lower bound where more
-execute it."""
+PRODUCTION = [
+    f.relative_to(ROOT).as_posix()
+    for room in (*ROOMS.values(), "matstd")
+    for f in sorted((ROOT / room).rglob("*.py"))
+]
+MOST_SECONDS = 300.0
+"""Seconds of tests that one wrong line is shown to; where more execute it, the share printed is a
+lower bound."""
 NOTICED, MISSED, UNDECIDED = "noticed", "MISSED", "undecided"
 OPPOSITE = {
     ast.Lt: ">=", ast.LtE: ">", ast.Gt: "<=", ast.GtE: "<", ast.Eq: "!=", ast.NotEq: "==",
@@ -146,68 +155,101 @@ def drawn(count: int, seed: int, rooms: list[str]) -> list[Mutant]:
     return [rng.choice(by_line[line]) for line in lines]
 
 
-class Imports:
-    """Tests for a wrong line by what they import: no traced run of all tests is needed."""
+class Traced:
+    """Tests that execute a line, and how long each takes: one run of all under coverage.py."""
 
-    def __init__(self) -> None:
-        folders = {name.removeprefix("matstd."): place for name, place in ROOMS.items()}
-        self.modules: dict[str, Path] = {}
-        self.faces: dict[Path, list[ast.ImportFrom]] = {}
-        for name, place in {**folders, "": "matstd"}.items():
-            for file in (ROOT / place).rglob("*.py"):
-                parts = ("matstd", name, *file.relative_to(ROOT / place).with_suffix("").parts)
-                self.modules[".".join(p for p in parts if p and p != "__init__")] = file
-        self.edges = {name: self.imported(file) for name, file in self.modules.items()}
-        self.tests = {
-            file.relative_to(ROOT).as_posix(): self.imported(file)
-            for file in sorted((ROOT / "tests").rglob("test_*.py"))
-        }
+    def __init__(self, folder: Path) -> None:
+        texts = [
+            (ROOT / f).read_bytes() for f in (*PRODUCTION, *sorted(ROOT.glob("tests/**/*.py")))
+        ]
+        folder /= sha256(b"".join(texts)).hexdigest()[:12]  # lines of other code are others
+        store, times = folder / "coverage", folder / "times.xml"
+        if not store.exists():
+            folder.mkdir(parents=True, exist_ok=True)
+            rooms = [f"--cov={room}" for room in (*ROOMS.values(), "matstd")]
+            traced = [*rooms, "--cov-context=test", "--cov-report="]
+            named = ["-o", "junit_family=xunit1", f"--junitxml={times}"]
+            subprocess.run(
+                [sys.executable, "-m", "pytest", "-q", *traced, *named],
+                cwd=ROOT,
+                env=os.environ | {"COVERAGE_FILE": str(store.absolute())},
+                check=True,
+            )
+        self.data = CoverageData(str(store))
+        self.data.read()
+        self.lines: dict[str, dict[int, list[str]]] = {}
+        self.seconds: dict[str, float] = defaultdict(float)
+        for case in ElementTree.parse(times).iter("testcase"):
+            self.seconds[f"{case.get('file')}::{case.get('name')}"] += float(case.get("time", 0))
 
-    def imported(self, file: Path) -> set[str]:
-        """Modules of the project that a file imports, with the module that defines each name."""
-        tree, out = ast.parse(file.read_text(encoding="utf-8")), set()
-        for node in ast.walk(tree):
-            if isinstance(node, ast.ImportFrom) and node.module:
-                out |= {self.defining(node.module, alias.name) for alias in node.names}
-            elif isinstance(node, ast.Import):
-                out |= {alias.name for alias in node.names}
-        return out & set(self.modules)
-
-    def defining(self, module: str, name: str) -> str:
-        """The module that defines what another offers as its face."""
-        if f"{module}.{name}" in self.modules:
-            return f"{module}.{name}"
-        file = self.modules.get(module)
-        if file is None or file.name != "__init__.py":
-            return module
-        if file not in self.faces:
-            body = ast.parse(file.read_text(encoding="utf-8")).body
-            self.faces[file] = [n for n in body if isinstance(n, ast.ImportFrom)]
-        for node in self.faces[file]:
-            if node.module not in (None, module) and name in [a.name for a in node.names]:
-                return self.defining(str(node.module), name)
-        return module
+    def executing(self, file: str, lines: Iterable[int]) -> set[str]:
+        """Tests that execute one of the lines: all of a file whose fixture does."""
+        if file not in self.lines:
+            self.lines[file] = self.data.contexts_by_lineno(str(ROOT / file))
+        contexts = {c for line in lines for c in self.lines[file].get(line, []) if c}
+        runs = (c.rpartition("|") for c in contexts)
+        return {test if phase == "run" else test.partition("::")[0] for test, _, phase in runs}
 
     def chosen(self, mutant: Mutant) -> list[str]:
-        """Test files for a wrong line: those that import its module most directly, short first."""
-        (module,) = [n for n, file in self.modules.items() if file == ROOT / mutant.file]
-        far, users = {module: 0}, {module}
-        while users:
-            near = {n for n, found in self.edges.items() if found & users} - set(far)
-            far |= dict.fromkeys(near, max(far.values()) + 1)
-            users = near
-        room, file = f"tests/{mutant.file.split('/')[0]}/", ROOT / mutant.file
-        # a command and an example are run by their names
-        name = re.compile(rf"\b({file.stem}|{file.parent.name})\b")
-        steps: dict[str, int] = {}
-        for test, found in self.tests.items():
-            steps_to = [far[n] for n in found if n in far]
-            if steps_to or name.search((ROOT / test).read_text(encoding="utf-8")):
-                steps[test] = min(steps_to, default=9)
-        order = sorted(
-            steps, key=lambda t: (steps[t], not t.startswith(room), (ROOT / t).stat().st_size)
+        """Tests that execute a wrong line, of short files first, within `MOST_SECONDS`.
+
+        What is executed at import is a constant, whose users count, or the field of a class; what
+        only another process executes is tested by what else executes a line of its file.
+        """
+        tree = ast.parse((ROOT / mutant.file).read_text(encoding="utf-8"))
+        found = self.executing(mutant.file, statement_lines(tree, mutant.line))
+        if not found:
+            for name in assigned(tree, mutant.line):
+                word = re.compile(rf"\b{name}\b")
+                for file in PRODUCTION:
+                    text = (ROOT / file).read_text(encoding="utf-8").splitlines()
+                    found |= self.executing(
+                        file, [k for k, t in enumerate(text, 1) if word.search(t)]
+                    )
+        if not found:
+            found = self.executing(mutant.file, self.data.lines(str(ROOT / mutant.file)) or [])
+        by_file: dict[str, list[str]] = defaultdict(list)
+        for test in sorted(found):
+            by_file[test.partition("::")[0]].append(test)
+        cost = {file: self.cost(file, tests) for file, tests in by_file.items()}
+        out: list[str] = []
+        spent = 0.0
+        for file in sorted(by_file, key=lambda f: cost[f]):
+            spent += cost[file]
+            if out and spent > MOST_SECONDS:
+                break
+            out += [file] if file in by_file[file] else by_file[file]
+        return out
+
+    def cost(self, file: str, tests: list[str]) -> float:
+        """Seconds of some tests of a file; its longest may be the one that makes a fixture."""
+        own = {test: s for test, s in self.seconds.items() if test.startswith(f"{file}::")}
+        return (
+            sum(own.values())
+            if file in tests
+            else (sum(own.get(t, 0.0) for t in tests) + max(own.values(), default=0.0))
         )
-        return order[:MOST_FILES]
+
+
+def statement_lines(tree: ast.Module, line: int) -> range:
+    """Lines of the innermost statement around a line, of one with a body its head alone."""
+    best = range(line, line + 1)
+    for node in ast.walk(tree):
+        if isinstance(node, ast.stmt) and node.lineno <= line <= (node.end_lineno or 0):
+            body = getattr(node, "body", None)
+            end = body[0].lineno - 1 if body else node.end_lineno or line
+            if line <= max(end, node.lineno):
+                best = range(node.lineno, max(end, node.lineno) + 1)
+    return best
+
+
+def assigned(tree: ast.Module, line: int) -> list[str]:
+    """Names that the statement of a line gives at the top of a module."""
+    for node in tree.body:
+        if isinstance(node, ast.Assign | ast.AnnAssign) and node.lineno <= line <= node.end_lineno:
+            goals = node.targets if isinstance(node, ast.Assign) else [node.target]
+            return [n.id for goal in goals for n in ast.walk(goal) if isinstance(n, ast.Name)]
+    return []
 
 
 class Copy:
@@ -300,10 +342,14 @@ def main() -> None:
     parser.add_argument(
         "--timeout", type=float, default=600.0, help="seconds after which a line is undecided"
     )
+    parser.add_argument(
+        "--trace", type=Path, default=ROOT / "out" / "traced",
+        help="folder of records which tests execute which line, one for every state of the code",
+    )  # fmt: skip
     options = parser.parse_args()
     rooms = options.rooms or [*ROOMS.values(), "matstd"]
     mutants = drawn(options.n, options.seed, rooms)
-    imports = Imports()
+    traced = Traced(options.trace)
     words: dict[Mutant, str] = {}
     copies: Queue[Copy] = Queue()
     with tempfile.TemporaryDirectory() as place:
@@ -313,7 +359,7 @@ def main() -> None:
         def tried(mutant: Mutant) -> None:
             copy = copies.get()
             try:
-                words[mutant] = copy.word(mutant, imports.chosen(mutant))
+                words[mutant] = copy.word(mutant, traced.chosen(mutant))
             finally:
                 copies.put(copy)
             print(f"{len(words):4} {words[mutant]:9} {mutant.file}:{mutant.line}", flush=True)
