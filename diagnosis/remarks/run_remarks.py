@@ -131,8 +131,9 @@ def _noise(fit: Fit) -> list[Remark]:
     """Noise that is not what the file states."""
     noise = fit.noise
     if noise.replicates is not None and noise.replicates_dof >= POLICY.repeat_dof:
-        ratio = noise.factor / noise.replicates
-        if ratio > 1.0 + 3.0 * (0.5 / noise.replicates_dof) ** 0.5:
+        most = noise.replicates * (1.0 + 3.0 * (0.5 / noise.replicates_dof) ** 0.5)
+        if noise.factor > most > 0.0:  # equal readings say nothing
+            ratio = noise.factor / noise.replicates
             return [noticed(What.WORSE_THAN_REPLICATES, ratio=ratio, dof=noise.replicates_dof)]
     if noise.is_wrongly_stated:
         u = float(np.median(fit.run.u))

@@ -239,6 +239,10 @@ def test_replicates_distinguish_noise_from_what_the_model_lacks(case) -> None:
     (remark,) = [r for r in remarks(fit) if getattr(r, "what", None) is What.WORSE_THAN_REPLICATES]
     assert remark.ratio == pytest.approx(fit.noise.factor / fit.noise.replicates)
     assert fit_run(run, fit.model).noise.replicates is None
+    # readings that repeat to the last digit scatter by nothing, which no residual is a ratio of
+    equal = fit_run(twice, fit.model)
+    assert equal.noise.replicates == 0.0
+    assert not [r for r in remarks(equal) if getattr(r, "what", 0) is What.WORSE_THAN_REPLICATES]
 
 
 def _readings_at(time, target, deviation, u):
