@@ -164,3 +164,27 @@ def test_the_pivot_of_a_head_in_metres(tmp_path):
     path.write_text(text.replace("220.0]", "0.22]"), encoding="utf-8")
     with pytest.raises(BadFile, match=r"axis\.B\.point: .*metres, \[0, 0, 220\]"):
         read_machine(path)
+
+
+@pytest.mark.parametrize(
+    ("name", "point"),
+    [
+        ("trunnion", "[0.0, 0.0, -450.0]"),
+        ("four-axis", "[0.0, 0.0, -450.0]"),
+        ("horizontal", "[0.0, 0.0, -650.0]"),
+        ("gantry", "[0.0, 0.0, 200.0]"),
+        ("head-table", "[0.0, 0.0, 200.0]"),
+    ],
+)
+def test_a_pivot_of_the_other_sign_is_asked_about(tmp_path, name, point):
+    """By more than any travel of the tool the line is then elsewhere; the file may confirm it."""
+    text = (ROOT / f"examples/machines/{name}-machine.toml").read_text(encoding="utf-8")
+    x, y, z = literal_eval(point)
+    path = tmp_path / "machine.toml"
+    path.write_text(text.replace(point, f"[{x}, {y}, {-z}]"), encoding="utf-8")
+    with pytest.raises(BadFile, match=r"\.point: .*is it \[0, 0, (-?\d+)\]\?") as refusal:
+        read_machine(path)
+    assert f"is it [0, 0, {z:g}]?" in str(refusal.value)
+    line = stated(str(refusal.value))
+    path.write_text(f"{line}\n" + path.read_text(encoding="utf-8"), encoding="utf-8")
+    read_machine(path)

@@ -159,7 +159,10 @@ def machine_questions(chain: Chain, is_placed: bool = True) -> Iterator[BadValue
         is_placed: Whether the place of the table is stated.
     """
     if len(chain.linear_axes) == 3:
-        rules = (_small_travel, *((_far_table, _table_off_centre) if is_placed else ()))
+        rules = (
+            _small_travel,
+            *((_far_table, _mirrored_pivot, _table_off_centre) if is_placed else ()),
+        )
         # what a rule finds explains what the later ones would
         yield from next(filter(None, (list(rule(chain)) for rule in rules)), [])
 
@@ -306,6 +309,30 @@ def _table_off_centre(chain: Chain) -> Iterator[BadValue]:
         found = f"{_list(chain.table_origin)}, {off:.4g} mm off the line of {link.name}"
         expected = f"the centre of the table's face, on that line, through {_list(link.point)}"
         yield BadValue("workpiece.origin", found, expected)
+
+
+def _mirrored_pivot(chain: Chain) -> Iterator[BadValue]:
+    """A line of the other sign: far from the table that it turns, or below the spindle of a head.
+
+    With every axis at zero a head turns about a line above the gauge point, and a table lies nearer
+    to its line than to the mirrored one.
+    """
+    last = max((i for i, k in enumerate(chain.links) if k.kind == "linear"), default=-1)
+    for i, link in enumerate(chain.links):
+        if link.kind != "rotary" or not link.programmed:
+            continue
+        meant = np.where(np.arange(3) == np.argmax(np.abs(link.point)), -link.point, link.point)
+        ends = np.array([_across(point, link) for point in (link.point, meant)])
+        if link.carries_workpiece:
+            away = np.linalg.norm(ends - _across(chain.table_origin, link), axis=1)
+            is_mirrored = away[0] > max(NEARER * away[1], FARTHEST_TABLE)
+            words = f"near the table at {_list(chain.table_origin)}"
+        else:
+            is_mirrored = i > last and ends[0, 2] < -LEAST_AWAY and not ends[:, :2].any()
+            words = "above the gauge point of the spindle"
+        if is_mirrored:
+            expected = f"a point {words}, every axis at zero; is it {_list(meant)}?"
+            yield BadValue(f"axis.{link.name}.point", _list(link.point), expected)
 
 
 def _across(point: Array, link: Link) -> Array:
