@@ -163,3 +163,14 @@ def test_squareness_scale_and_reversal_of_iso_230_4_alone(tmp_path):
         assert one.value == pytest.approx(value, abs=4.0 * one.u)
     # 360 readings of 0.3 µm: the mean square of sin cos is an eighth
     assert found[0].u == pytest.approx(0.3e-3 / 150.0 / np.sqrt(360 / 8), rel=0.15)
+
+
+@pytest.mark.parametrize("radius", ["-150", "nan", "1e9"])
+def test_a_radius_is_refused_with_the_range_that_is_expected(tmp_path, capsys, radius):
+    path = tmp_path / "ball.csv"
+    path.write_text("angle [deg];CCW [um]\n" + "".join(f"{a};0\n" for a in range(0, 360, 5)))
+    asked = ["import", str(path), "--circle", "XY", "--u-um", "0.5", "--radius", radius]
+    assert main([*asked, "-o", str(tmp_path / "run.csv")]) == 2
+    line = capsys.readouterr().err
+    assert f"--radius {float(radius):g}: expected a number above 0, below 1000000" in line
+    assert not (tmp_path / "run.csv").exists()

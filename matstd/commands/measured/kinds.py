@@ -106,7 +106,7 @@ def circle(args: argparse.Namespace, sheet: Sheet) -> tuple[Run, Chain]:
         raise DesignError("--radius: not given; expected a number above 0")
     for option, value in (("--radius", args.radius), ("--feed", args.feed)):
         if value is not None and not 0.0 < value < 1e6:
-            raise DesignError(f"{option}: {value:g}; expected a number above 0")
+            raise DesignError(f"{option} {value:g}: expected a number above 0, below 1000000")
     if args.bar_force is not None and not abs(args.bar_force) <= 1e5:
         raise DesignError(f"--bar-force {args.bar_force:g}: expected at most 100000 N")
     test = read_circle(sheet, plane, args.radius, args.unit)
