@@ -18,6 +18,7 @@ from matstd.diagnosis.faults import DescriptionFault
 from matstd.diagnosis.fit import Fit, Prior
 from matstd.diagnosis.geometry import LearntGeometry, learnt_geometry
 from matstd.diagnosis.laws import Learning
+from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.remarks import Remark
 from matstd.diagnosis.residual import Region, Structure
 from matstd.twin.display import Tabular
@@ -154,6 +155,14 @@ class Diagnosis(Tabular):
         """The model with everything that stands: names, and laws beside them or in their place."""
         return self.laws.after if self.laws is not None and self.laws.laws else self.fit
 
+    def _holds_names(self, laws: Learning) -> bool:
+        """Whether all that laws put in the place of names is of the same class as these."""
+        odds = {one.effect: one.log_odds for one in self.candidates}
+        own = [odds.get(name, np.inf) for name in laws.of_library]
+        named = [odds.get(effect.name, -np.inf) for effect in laws.instead_of]
+        is_same = bool(own and named) and min(named) > max(own) - POLICY.log_odds_alike
+        return is_same and not self.parts.remains.is_real
+
     @property
     def has_fallen(self) -> bool:
         """Whether anything stands beside the starting model."""
@@ -166,11 +175,14 @@ class Diagnosis(Tabular):
         imitates without it, as the straightness of an axis along which the run drifted. The errors
         are those of the average over laws that the run does not distinguish, which predicts. Names
         that they explain better are withdrawn: none of them stands in a headline, and no plan
-        distinguishes a name withdrawn from its rivals.
+        distinguishes a name withdrawn from its rivals. A law that is itself an effect of the
+        library withdraws no name that the search did not distinguish from that effect.
 
         Args:
             before: Estimates of the starting model from an earlier run.
         """
+        if self._holds_names(laws):
+            return self
         found = replace(self, laws=laws)
         if found.standing is not self.fit:
             geometry = learnt_geometry(found.standing, before, self.start)

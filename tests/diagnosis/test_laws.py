@@ -344,6 +344,21 @@ def test_the_headline_leads_with_the_law_and_withdraws_the_names(slipped) -> Non
     assert found.plans == ()
 
 
+def test_a_law_that_is_of_the_library_withdraws_no_name_of_its_class(slipped) -> None:
+    """Whether the library's effect is of the class of the name, the search has weighed."""
+    searched, learnt = slipped
+    drift = parse_effect("drift", searched.run.touches.chain)
+    laws = tuple(replace(law, library=LibraryEffect(drift, law.score)) for law in learnt.laws)
+    learnt = replace(learnt, laws=laws)
+    parts = replace(searched.parts, remains=replace(searched.parts.remains, is_real=False))
+    (slip,) = [one for one in searched.candidates if one.effect == "artefact-slip"]
+    for odds, withdrawn in ((2.0, ()), (-2.0, ()), (20.0, searched.found)):
+        other = replace(slip, effect="drift", log_odds=slip.log_odds + odds)
+        found = replace(searched, parts=parts, candidates=(slip, other)).with_laws(learnt)
+        assert found.withdrawn == withdrawn
+        assert (" Withdrawn: " in verdict_sentence(found)) == bool(withdrawn)
+
+
 def test_a_name_beside_which_a_law_stands_is_not_withdrawn(slipped) -> None:
     searched, learnt = slipped
     found = searched.with_laws(replace(learnt, instead_of=(), instead_odds=0.0))
