@@ -3,6 +3,7 @@
 import doctest
 import importlib
 import inspect
+import re
 import shutil
 import subprocess
 import sys
@@ -151,10 +152,12 @@ def test_large_records_have_a_short_text(there) -> None:
     model = ordinary_model(run.touches.chain)
     files = matstd.machine_file("hmc1995"), matstd.machine_file("hmc1995", errors=True)
     machine = matstd.compensate(*files, tool_length=100.0)
+    tables = machine.tables("tables", "iso230")
+    assert re.match(r"ISO 230 names .*: [\d.]+ -> .* µm rms over the workspace", repr(tables))
     records = [
         machine,
         machine.errors,
-        machine.tables("tables", "iso230"),
+        tables,
         run,
         run.touches.chain,
         model,

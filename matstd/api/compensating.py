@@ -38,10 +38,15 @@ from matstd.diagnosis.files import SavedModel
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.remarks import Remark, short_beam
 from matstd.effect_kinds import register_effects
-from matstd.report.compensation import draw_program, draw_shares_along, write_compensation_page
+from matstd.report.compensation import (
+    draw_program,
+    draw_shares_along,
+    table_lines,
+    write_compensation_page,
+)
 from matstd.report.style import save
 from matstd.twin.compute import Progress, silent
-from matstd.twin.display import Displayed
+from matstd.twin.display import Displayed, text
 from matstd.twin.elastic import short_beams
 from matstd.twin.errors import BadArgument, BadFile, DesignError
 from matstd.twin.files import read_any_text, read_poses, read_text, results_folder, write_whole
@@ -63,6 +68,12 @@ class TableResults(Displayed):
     done: tuple[VerifiedTables, ...]  # what the tables of every control correct and leave
     # why tables of other controls were not written: they would make the machine worse
     refused: tuple[Harmful, ...]
+
+
+@text.register
+def _text(found: TableResults) -> str:
+    lines = [next(iter(table_lines(played)))[0] for played in found.done]
+    return "\n".join([*lines, *(f"not written: {refusal}" for refusal in found.refused)])
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -285,8 +296,8 @@ def compensate(
     with drives_stated(name):
         known, remarks, content, probes = machine_errors(model, errors, state)
     checked_length(tool_length, probes)
-    for text in add:
-        known = with_added(known, text)
+    for one in add:
+        known = with_added(known, one)
     with drives_stated(name):
         known = with_unknowns(known)
     known = known.switched(dict(switch or {}))
