@@ -103,6 +103,11 @@ def test_the_page_shows_curve_and_touches_and_takes_the_law_away(browser, learni
     assert shown["half"] == pytest.approx((2.0 * curve.u).tolist(), abs=1e-3)
     used = learning.after.used
     assert np.array(shown["y"])[used] == pytest.approx(curve.put_back[used], abs=5e-3)
+    # one side of a law that goes one way has no room for its mirror image
+    ends = json.loads(run(browser, "return JSON.stringify(livePage.residuals.lawEnds)"))
+    low, high = np.quantile([*curve.put_back, *curve.value, 0.0], [0.0, 1.0])
+    assert low - 0.2 * (high - low) < ends[0] < ends[1] < high + 0.2 * (high - low)
+    assert ends[0] < curve.value.min() < curve.value.max() < ends[1]
     known = [learning.after.rms / UM, learning.after.test_rms / UM]
     assert [shown["fitted"], shown["heldOut"]] == pytest.approx(known, rel=1e-12)
     run(browser, f"""document.querySelector('input[data-effect="{LAW}"]').click()""")

@@ -42,7 +42,7 @@ export class Residuals {
     this.law = k < count ? null : curves[k - count];
     this.column = this.law ? { values: this.law.touchX.values, name: this.law.label } : columns[k];
     this.plot.frame.yLabel = this.law ? this.law.carrier : `residual in ${unit}`;
-    this.lawTop = this.law ? this.highest(this.law) : 0;
+    this.lawEnds = this.law && this.endsOf(this.law);
     const finite = this.column.values.filter(Number.isFinite);
     const [low, high] = finite.length ? extent(finite) : [0, 1];
     this.xRange = [low, high];
@@ -56,8 +56,8 @@ export class Residuals {
     this.top = Math.max(this.top, 1.8 * limit);  // fixed, else nothing is seen to fall
     this.plot.chosen = chosen;
     const [seen, curve] = this.law ? this.putBack(this.law, shown) : [residual, null];
-    const edge = this.law ? this.lawTop : this.top;  // gross errors stand at the edge
-    const y = seen.map(v => Math.max(-edge, Math.min(edge, v)));
+    const [least, most] = this.lawEnds || [-this.top, this.top];  // gross errors stand at the edge
+    const y = seen.map(v => Math.max(least, Math.min(most, v)));
     const [low, high] = extent([...y, ...(this.ends || [-2 * this.data.noise, 2 * this.data.noise])]);
     this.ends = [low, high];  // they only grow
     this.plot.show({ x: this.column.values, y, colours, xRange: this.xRange,
@@ -66,7 +66,7 @@ export class Residuals {
     this.hint.textContent = `${alone}drag to choose touches, click to choose none; ${this.law
       ? `${curve ? "line: the law with ± 2 u; " : ""}dots: residuals${
         curve ? " with the law put back" : ""}, over their levers on ${this.law.carrier}`
-      : "shaded: ± 2 u of the stated noise; gross errors stand at the edge"}`;
+      : "shaded: ± 2 u of the stated noise"}; gross errors stand at the edge`;
     this.byPose(shown);
     this.list(shown);
   }
@@ -81,11 +81,13 @@ export class Residuals {
       half: u.values.map(v => 2 * v) }];
   }
 
-  /** End of the scale of a law: that of its curve as it was learnt. */
-  highest({ value, lever, touchValue }) {
+  /** Ends of the scale of a law: those of its curve as it was learnt, and of nearly all touches. */
+  endsOf({ value, lever, touchValue }) {
     const rest = this.board.residuals(this.board.errors());
-    const seen = rest.map((r, i) => Math.abs(r / lever.values[i] + touchValue.values[i]));
-    return 1.3 * Math.max(quantile(seen, 0.98) || 0, ...value.values.map(Math.abs)) || 1;
+    const seen = rest.map((r, i) => r / lever.values[i] + touchValue.values[i]);
+    const ends = [0, quantile(seen, 0.02), quantile(seen, 0.98), ...value.values];
+    const [low, high] = extent(ends.filter(Number.isFinite)), room = 0.15 * (high - low) || 1;
+    return [low - room, high + room];
   }
 
   mark({ marked }) {
