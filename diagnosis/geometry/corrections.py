@@ -10,9 +10,7 @@ from matstd.diagnosis.geometry.quantities import Quantity
 from matstd.diagnosis.geometry.rivals import Descriptions, FoundNumber
 from matstd.diagnosis.geometry.rows import Estimate, GeometryRow
 from matstd.diagnosis.policy import POLICY
-from matstd.twin.machine import LETTERS, Chain, Link
-
-AXES = {0, 1, 2}
+from matstd.twin.machine import LETTERS, Link
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,42 +50,19 @@ def corrections(
         return (), ()
     out = []
     descriptions = Descriptions(fit)
-    turned = _turned_axes(fit.model.chain, clear)
-    for name in dict.fromkeys((*(r.axes[-1] for r in clear), *turned)):
+    for name in dict.fromkeys(r.axes[-1] for r in clear):
         link = fit.model.chain.link(name)
         own = {r.symbol: r.estimate for r in clear if r.axes[-1] == name}
-        moved = {LETTERS.index(s[1]): e for s, e in own.items() if s[1] in LETTERS[:3]}
-        made = [_moved_point(link, moved)] if moved else []
-        made += [_turned_direction(link, turned[name])] if name in turned else []
-        for correction in made:
-            letters = LETTERS[:3] if correction.key.endswith("point") else LETTERS[3:]
-            wrong = [(s, e.value) for s, e in own.items() if s[1] in letters]
-            out.append(replace(correction, rivals=descriptions.rivals(wrong)))
+        for made, letters in ((_moved_point, LETTERS[:3]), (_turned_direction, LETTERS[3:])):
+            wrong = {s: e for s, e in own.items() if s[1] in letters}
+            if wrong:
+                rivals = descriptions.rivals([(s, e.value) for s, e in wrong.items()])
+                correction = made(link, {letters.index(s[1]): e for s, e in wrong.items()})
+                out.append(replace(correction, rivals=rivals))
     # only lines that are wrong beyond an ordinary error may have one common cause
     far = [r for r in clear if r.is_far or r.is_beyond_expected]
     together = descriptions.rivals([(r.symbol, r.estimate.value) for r in far])
     return tuple(out), together if len({key_of(r) for r in far}) > 1 else ()
-
-
-def _turned_axes(chain: Chain, rows: Sequence[GeometryRow]) -> dict[str, dict[int, Estimate]]:
-    """Rotation vectors of axes by their components 0, 1, 2, as far as anything turns them.
-
-    A squareness is measured from the first axis, the tilt of a line from the linear axis across
-    both the line and the rotation: who turns that axis in the file turns the line with it.
-    """
-    found = {(r.axes[-1], r.symbol[1]): r.estimate for r in rows}
-    out: dict[str, dict[int, Estimate]] = {}
-    for name in (*chain.linear_axes, *chain.rotary_axes):
-        link = chain.link(name)
-        for i, letter in enumerate(LETTERS[3:]):
-            names = [name]
-            if link.kind == "rotary":
-                names += [a for a in chain.linear_axes if {chain.link(a).own, link.own, i} == AXES]
-            parts = [found[a, letter] for a in names if (a, letter) in found]
-            if parts:
-                u = float(np.linalg.norm([e.u for e in parts]))
-                out.setdefault(name, {})[i] = Estimate(sum(e.value for e in parts), u)
-    return out
 
 
 def key_of(row: GeometryRow) -> str:
