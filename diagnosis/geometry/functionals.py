@@ -39,6 +39,9 @@ TRAVEL_POINTS = 21
 MAX_POSITIONS = 400
 """Probed positions at which an affine field is fitted: more do not move a slope by a per cent."""
 
+MIN_SEEN_SHARE = 1e-3
+"""Share of what a location error does that the others must not do, if it is seen beside them."""
+
 MIN_INDEPENDENT_SHARE = 0.1
 """Least singular value of unit columns of readings from which axes moved independently."""
 
@@ -238,7 +241,13 @@ def _rotary(fit: Fit, theta: Array, axis: str) -> Iterator[Functional]:
     """Line, zero and error motions of a rotary axis."""
     t = fit.run.touches[fit.used]
     link = t.chain.link(axis)
-    reach = float(np.linalg.norm(np.ptp(t.point_table, axis=0)))
+    places = t.point_table
+    if not link.carries_workpiece:  # a head turns the tool, however large the standard is
+        head = [t.chain.axis_index(name) for name in t.chain.tool_rotary_axes]
+        q = np.zeros_like(t.q)
+        q[:, head] = t.q[:, head]
+        places = tip(t.chain, q, t.length)
+    reach = float(np.linalg.norm(np.ptp(places, axis=0)))
     if t.instrument.reads_angle:
         reach = float(np.median(np.linalg.norm(t.point, axis=1)))
     unit = {False: "mm", True: "rad"}
@@ -297,38 +306,69 @@ def _line_of(fit: Fit, axis: str) -> dict[int, Array]:
     tool: `EX0C` and an opposite `EX0t` are the same there. With the tool at both ends of what was
     probed along the linear axes across the line, to which ISO 230-1 refers its squareness: from one
     place a turned standard looks like a displaced line.
+
+    No linear axis moves the tool within a head. At one place beside the line of a head, a tilt is a
+    displacement; where the head swings the tool away, it is not. Each swing displaces the tool by
+    errors of its own, so that the displacement is that without a swing. A tilt that no swing shows
+    is that of the model, and the displacement is that at the tool.
     """
     t = fit.run.touches[fit.used]
     chain = t.chain
     link = chain.link(axis)
-    sweep = _along_axis(fit, axis)
-    places_of_tool = []
-    across = [a for a in chain.linear_axes if abs(chain.link(a).direction @ link.direction) < 0.5]
-    for linear in across or chain.linear_axes:
-        for end in _probed(fit, linear):
-            q = sweep.q.copy()
-            q[:, chain.axis_index(linear)] = end
-            places_of_tool.append(q)
-    q = np.concatenate(places_of_tool or [sweep.q])
-    poses = at_poses(chain, q, float(np.mean(t.length)))
-    D = _displacements(fit, poses)
     places = {f"location({s.name})": s for s in chain.symbols if s.family is Family.LOCATION}
     own = {
-        places[effect.name].component: D[:, :, start]
+        places[effect.name].component: start
         for start, effect in geometric_effects(fit)
         if effect.name in places and places[effect.name].link == axis
     }
     own.pop(link.own_component, None)  # its zero is a rotation of the standard, or of the tool
-    if not own:
-        return {}
-    rigid = np.concatenate(
-        [np.tile(np.eye(3), (len(poses), 1, 1)), _crossed(poses.point_table)], axis=2
-    )
-    basis = np.concatenate([np.stack(list(own.values()), axis=2), rigid], axis=2)
-    size = np.maximum(np.linalg.norm(basis.reshape(-1, basis.shape[2]), axis=0), 1e-300)
-    scaled = basis.reshape(-1, basis.shape[2]) / size
-    found = np.linalg.lstsq(scaled, D.reshape(-1, D.shape[2]), rcond=1e-9)[0] / size[:, None]
-    return {component: found[k] for k, component in enumerate(own)}
+    across = [a for a in chain.linear_axes if abs(chain.link(a).direction @ link.direction) < 0.5]
+    left, size = [], np.zeros(len(fit.model.parameters))
+    for i, sweep in enumerate(_swings(fit, axis)):
+        ends_of_tool = []
+        for linear in across or chain.linear_axes:
+            for end in _probed(fit, linear):
+                q = sweep.copy()
+                q[:, chain.axis_index(linear)] = end
+                ends_of_tool.append(q)
+        poses = at_poses(chain, np.concatenate(ends_of_tool or [sweep]), float(np.mean(t.length)))
+        D = _displacements(fit, poses).reshape(3 * len(poses), -1)
+        rigid = [np.tile(np.eye(3), (len(poses), 1, 1)), _crossed(poses.point_table)]
+        free = np.concatenate(rigid, axis=2).reshape(len(D), -1)
+        if i > 0:
+            free = np.column_stack([free, *(D[:, own[k]] for k in own if k < 3)])
+        left.append(_beside(free, D))
+        size = np.maximum(size, np.linalg.norm(D, axis=0))
+    D = np.concatenate(left)
+    seen: list[int] = []
+    for component in sorted(own):
+        column = D[:, own[component]]
+        rest = _beside(D[:, [own[k] for k in seen]], column)
+        if np.linalg.norm(rest) > MIN_SEEN_SHARE * size[own[component]]:
+            seen.append(component)
+    basis = D[:, [own[k] for k in seen]]
+    scale = np.linalg.norm(basis, axis=0)
+    found = np.linalg.lstsq(basis / scale, D, rcond=None)[0] / scale[:, None]
+    out = {component: np.eye(1, D.shape[1], start)[0] for component, start in own.items()}
+    return out | dict(zip(seen, found, strict=True))
+
+
+def _swings(fit: Fit, axis: str) -> Iterator[Array]:
+    """Readings (N, A) while an axis turns: others at rest, then each that swings its tool aside."""
+    chain = fit.run.touches.chain
+    rest = _along_axis(fit, axis).q
+    yield rest
+    head = chain.tool_rotary_axes
+    for other in head[head.index(axis) + 1 :] if axis in head else ():
+        q = rest.copy()
+        q[:, chain.axis_index(other)] = max(_probed(fit, other), key=abs)
+        yield q
+
+
+def _beside(columns: Array, values: Array) -> Array:
+    """What least squares by columns (M, K) leave of values (M, ...)."""
+    unit = columns / np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
+    return np.asarray(values - unit @ np.linalg.lstsq(unit, values, rcond=1e-9)[0])
 
 
 def _crossed(points: Array) -> Array:

@@ -250,3 +250,88 @@ def test_far_is_beyond_five_usual_sizes_and_uncertainties(
     )
     assert row.is_far is is_far
     assert row.at_ends == Estimate(2.0 * abs(value), 2.0 * u)
+
+
+SWUNG = [(0, 0), *((c, 30) for c in (0, 90, 180, 270)), (45, 60)]
+UPRIGHT = [(c, 0) for c in (0, 90, 180, 270, 45, 135)]
+
+
+def head_run(poses, moved: dict, noise: float = 0.8 * UM) -> Run:
+    """Touches by a gantry mill with a C A head: readings of both, deg, and what is elsewhere."""
+    swing = Axis((-np.pi / 2, np.pi / 2), point=(0.0, 0.0, 235.0))
+    axes = dict.fromkeys("XYZ", Axis((-600.0, 600.0))) | {"C": Axis((-np.pi, np.pi)), "A": swing}
+    chain = make_chain("gantry", "[w f X Y Z C A t]", axes)
+    rng = np.random.default_rng(3)
+    n, k = 480, len(poses)
+    pose = np.arange(n) % k
+    q = np.column_stack([rng.uniform(-400.0, 400.0, (n, 3)), np.deg2rad(poses)[pose]])
+    touches = Touches(
+        chain=chain,
+        q=q,
+        length=np.full(n, 210.0),
+        radius=np.zeros(n),
+        point=tip(chain, q, 210.0),
+        normal=np.eye(3)[np.arange(n) // k % 3],
+        setups=(Setup("a"),),
+        setup=np.zeros(n, dtype=np.int64),
+        time=np.zeros(n),
+        approach=np.zeros((n, 5)),
+        pose=pose,
+    )
+    true = chain
+    for axis, changes in moved.items():
+        true = with_link(true, axis, **changes)
+    seen = -displaced(touches, true, q) + rng.normal(0.0, noise, n)
+    return Run(touches, seen, np.full(n, 0.8 * UM))
+
+
+BESIDE = {"C": {"point": np.array([14.0, -9.0, 0.0]) * UM}}
+
+
+def test_a_line_of_a_head_is_no_tilt_where_the_head_swings_the_tool_away() -> None:
+    """The circle of one place of the tool is a displacement and a tilt at once, half of each."""
+    run = head_run(SWUNG, BESIDE)
+    rows = {r.symbol: r for r in geometry_rows(fit_run(run, ordinary_model(run.touches.chain)))}
+    for symbol, true in {"EX0C": 14 * UM, "EY0C": -9 * UM, "EA0C": 0.0, "EB0C": 0.0}.items():
+        found = rows[symbol].estimate
+        assert rows[symbol].is_determined
+        assert abs(found.value - true) < 3.5 * found.u
+        assert found.u < 2.0 * UM
+    # the tool 445 mm below A turns within 385 mm of C, whatever the size of the standard
+    assert rows["EB0C"].lever < 1200.0
+
+
+def test_a_head_that_never_swings_shows_its_line_at_the_tool_and_no_tilt() -> None:
+    """By hand: a line turned by 60 µrad about Y is 12.6 µm off where the ball is, 210 mm below."""
+    tilt = turned(np.array([0.0, 0.0, 1.0]), np.array([0.0, 60.0 * URAD, 0.0]))
+    run = head_run(UPRIGHT, {"C": {"direction": tilt}}, noise=0.0)
+    rows = {r.symbol: r for r in geometry_rows(fit_run(run, ordinary_model(run.touches.chain)))}
+    assert rows["EX0C"].is_determined
+    assert rows["EX0C"].estimate.value == pytest.approx(-12.6 * UM, rel=SHRUNK)
+    assert not rows["EA0C"].is_determined
+    assert not rows["EB0C"].is_determined
+
+
+def test_linear_axes_copied_first_and_lines_after_them_leave_the_machine_as_it_is() -> None:
+    """The tilt of a line is against the linear axes: as these are turned, so it changes."""
+    turns = {"Y": np.array([-40.0, 0.0, 0.0]), "Z": np.array([-30.0, 20.0, 0.0])}
+    true = {a: {"direction": np.eye(3)["XYZ".index(a)] + v * URAD} for a, v in turns.items()}
+    first = run = head_run(SWUNG, {**true, **BESIDE})
+    t = first.touches
+    chain = t.chain
+    for axes in ("XYZ", "CA"):
+        found = learnt_geometry(fit_run(run, ordinary_model(chain))).corrections
+        for one in found:
+            _, axis, key = one.key.split(".")
+            if axis in axes:
+                chain = with_link(chain, axis, **{key: np.array(one.found)})
+                u = np.array([np.inf if u is None else u for u in one.u])
+                wanted = {**true, **BESIDE}.get(axis, {}).get(key, one.stated)
+                assert np.all(np.abs(one.found - wanted) < 3.5 * u), one.key
+        # the same readings of the same points, by the file as it is now
+        seen = first.deviation + displaced(t, chain, t.q)
+        run = Run(replace(t, chain=chain), seen, first.u)
+    rows = geometry_rows(fit_run(run, ordinary_model(chain)))
+    for row in rows:
+        if row.is_determined and row.quantity in (Quantity.ROTARY_LINE, Quantity.SQUARENESS):
+            assert abs(row.estimate.value) < 3.0 * row.estimate.u, row.symbol
