@@ -284,3 +284,13 @@ def test_a_clock_that_was_set_is_reported(tmp_path: Path) -> None:
     ]
     run = read_run(write(tmp_path, rows))
     assert any("time_s jumps from" in r and "line 39" in r for r in run.remarks)
+
+
+def test_sensors_that_stay_constant_are_one_remark(tmp_path: Path) -> None:
+    rows = [ROW + ",20.1,22", later(ROW, 3.0) + ",20.1,22"]
+    columns = COLUMNS + ",T_bed_degC,T_column_degC"
+    (remark,) = read_run(write(tmp_path, rows, columns=columns)).remarks
+    known = ("T_s_degC", 20.5), ("T_bed_degC", 20.1), ("T_column_degC", 22)
+    assert remark == ", ".join(f"{name} is constant at {t} degC" for name, t in known) + (
+        ": what varies within the run does not follow from them"
+    )

@@ -124,7 +124,7 @@ def _is_one_clock(at: Array, back: IntArray, order: IntArray) -> bool:
 
 def temperatures(table: CsvTable, at: Array, remarks: list[str]) -> dict[str, Array]:
     """Temperature of every sensor at times (N,); missing and impossible values are filled."""
-    out = {}
+    out, constant = {}, []
     for column in table.columns:
         match = SENSOR.match(column)
         if match is None:
@@ -134,10 +134,12 @@ def temperatures(table: CsvTable, at: Array, remarks: list[str]) -> dict[str, Ar
         if filled is not None:
             out[match.group(1)] = filled
             if np.ptp(filled) == 0.0 and match.group(1) != BODY:
-                remarks.append(
-                    f"{column} is constant at {filled[0]:g} degC: what varies within the run does "
-                    "not follow from it"
-                )
+                constant.append(f"{column} is constant at {filled[0]:g} degC")
+    if constant:
+        words = (
+            f"what varies within the run does not follow from {'them' if constant[1:] else 'it'}"
+        )
+        remarks.append(f"{', '.join(constant)}: {words}")
     return out
 
 
