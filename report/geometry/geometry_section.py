@@ -14,8 +14,9 @@ _SPANS = (
 )
 _FILE = (
     "Points and directions that this run estimates; below each, the alternatives that the run "
-    "does not distinguish from it, of which only one is wrong. Copy all of them together, then "
-    "estimate the starting model again."
+    "does not distinguish from it, of which only one is wrong. Lines of rotary axes are stated "
+    "against the linear axes: copy the directions of linear axes first and compare again, then "
+    "copy all numbers of the rotary axes that this second page has."
 )
 
 
