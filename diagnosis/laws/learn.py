@@ -11,6 +11,7 @@ from matstd.diagnosis.laws.acceptance import (
     Refusal,
     held_out,
     holds_between,
+    holds_elsewhere,
     memory_left,
     memory_score,
     predicts_better,
@@ -234,7 +235,8 @@ def _refusal(
     """
     if best.score < policy.min_score:
         return Refusal.CHANCE
-    if not predicts_better(*white) or not holds_between(*white, best.law):
+    holds = holds_between(*white, best.law) and holds_elsewhere(*white, best.law)
+    if not holds or not predicts_better(*white):
         return Refusal.PREDICTION
     if not stands_beside_memory(start, laws, best.law, best.score, white, policy):
         return Refusal.MEMORY

@@ -1,6 +1,6 @@
 """One law: screened by curves, made a formula, refined, beside its rivals."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -71,6 +71,10 @@ REFINING = 0.5
 nine in ten gained less than 0.05. What could not be kept even so is not refined."""
 
 
+_Place = tuple[str, tuple[Driver, ...]]
+"""Name of a carrier, with variables."""
+
+
 @dataclass(frozen=True, eq=False)
 class Searched:
     """What a search for one law found."""
@@ -121,12 +125,7 @@ def search_law(space: Space, ground: Ground, policy: LawPolicy) -> Searched:
     for f in _worth(_gaining(two, one), one, MIN_SHARE_PAIR, TOP_PAIRS):
         found += product_formulas(space, grids, f.bearer, f.drivers, 6)
     scored = [(_charged(c, field, policy).score, c) for c in _distinct(found)]
-    promising = sorted(scored, key=lambda one: -one[0])[:REFINED]
-    top = promising[0][0] if promising else 0.0
-    curved = {(f.bearer.carrier.name, f.drivers): f.evidence for f in one}
-    hoped = [max(s, curved.get((c.bearer.carrier.name, c.law.drivers), s)) for s, c in promising]
-    least = min(0.5 * top, top - FAR)
-    near = [one for hope, one in zip(hoped, promising, strict=True) if hope > least]
+    near = _promising(scored, {(f.bearer.carrier.name, f.drivers): f.evidence for f in one})
     hopeful = [c for score, c in near if score + REFINING * _gain(c, space) > policy.min_score]
     polished = [refined(space, field, c) for c in hopeful] or [c for _, c in near[:1]]
     polished += [refined(space, field, c) for c in _at_other_carriers(space, field, polished)]
@@ -147,6 +146,36 @@ def search_law(space: Space, ground: Ground, policy: LawPolicy) -> Searched:
         curve=float(best_curve),
         drift=drifts[0].evidence - policy.tried_singles if drifts else -np.inf,
     )
+
+
+def _promising(
+    scored: Sequence[tuple[float, Candidate]],
+    curved: Mapping[tuple[str, tuple[Driver, ...]], float],
+) -> list[tuple[float, Candidate]]:
+    """Candidates that refinement may make the best, with their scores, the best hope first.
+
+    Between points of its grid the best formula of a carrier and a variable reaches about what the
+    curve over them gains, and the others gain as much: a pulse over time lost 100 of 540 on the
+    grid, and a plateau over a temperature that followed the time was taken for it.
+
+    Args:
+        scored: Candidates with their scores on the grid, charges taken off.
+        curved: What the curve over a variable gains at a carrier.
+    """
+    best: dict[_Place, float] = {}
+    for score, one in scored:
+        key = _place(one)
+        best[key] = max(best.get(key, score), score)
+    lost = {key: max(curved.get(key, score) - score, 0.0) for key, score in best.items()}
+    hoped = [(score + lost[_place(one)], score, one) for score, one in scored]
+    hoped = sorted(hoped, key=lambda h: -h[0])[:REFINED]
+    top = max((score for score, _ in scored), default=0.0)
+    least = min(0.5 * top, top - FAR)
+    return [(score, one) for hope, score, one in hoped if hope > least]
+
+
+def _place(one: Candidate) -> _Place:
+    return one.bearer.carrier.name, one.law.drivers
 
 
 def _at_best_places(space: Space, field: Field, found: Sequence[Candidate]) -> list[Candidate]:

@@ -113,6 +113,31 @@ def test_a_law_that_begins_with_the_set_up_predicts_a_second_run() -> None:
     assert said.without > 1.3 * true
 
 
+def test_a_function_of_two_readings_is_not_taken_for_one_of_a_single_reading() -> None:
+    rng = np.random.default_rng([2026, 13])  # a ring about a point
+    run, second = (
+        read_back(text, MACHINES["hmc1995"]) for text in law_case(rng, "hmc1995", "radius")[:2]
+    )
+    found = learn_laws(run)
+    assert (found.laws, found.refusal) == ((), Refusal.PREDICTION)
+    beginning, law = found.beginning, found.refused.law
+    assert law.is_curve_alone
+    fit = beginning.fitted([law])
+    own = columns([law], second.touches) @ fit.theta[fit.of_effect(law.name)]
+    model = beginning.fit.model
+    assert error_left(fit_beside(own, second, model)) > error_left(fit_beside(0.0, second, model))
+
+
+def test_a_pulse_over_time_is_no_law_over_a_temperature_that_follows_the_time() -> None:
+    rng = np.random.default_rng([8802, 4])
+    texts = law_case(rng, "fork", "lubrication")
+    found = learn_laws(read_back(texts[0], MACHINES["fork"]))
+    (pulse,) = [one.law for one in found.laws]
+    assert [factor.name for factor in pulse.factors] == ["pulse time"]
+    assert pulse.places == pytest.approx((2500.0, 900.0), rel=0.02)
+    assert not found.laws[0].travels
+
+
 def test_another_run_is_predicted_less_surely_by_the_size_of_the_law(stylus) -> None:
     _, (run, second, _), found = stylus
     text = model_text(found.saved, "run")
