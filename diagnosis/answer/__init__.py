@@ -13,6 +13,7 @@ from matstd.diagnosis.answer.comparison import GroupResidual as GroupResidual
 from matstd.diagnosis.answer.comparison import compare as compare
 from matstd.diagnosis.answer.detectable import Detectable as Detectable
 from matstd.diagnosis.answer.next_measurement import Plan as Plan
+from matstd.diagnosis.answer.parts import Doubt as Doubt
 from matstd.diagnosis.answer.parts import GeometryPart as GeometryPart
 from matstd.diagnosis.answer.parts import NamedEffect as NamedEffect
 from matstd.diagnosis.answer.parts import Remainder as Remainder

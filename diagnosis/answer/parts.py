@@ -7,6 +7,7 @@ good name and an open question stand beside one another, and neither hides the o
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from enum import Enum
 
 import numpy as np
 
@@ -32,6 +33,15 @@ class GeometryPart:
     left: float  # scatter of the residual of the geometric model alone, mm
 
 
+class Doubt(Enum):
+    """Why an effect that was found stands in no headline."""
+
+    CHANCE = "chance may make it"
+    UNCERTAIN = "its size is within its uncertainty"
+    SMALL = "it is small beside the stated noise"
+    WITHDRAWN = "a law explains more"
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class NamedEffect:
     """An effect with a name, and its weight in this run."""
@@ -43,11 +53,15 @@ class NamedEffect:
     # the next best explanation of what it explains; None for one that the user named, and where no
     # other effect of the library acts on these touches
     runner_up: Rival | None
-    # whether it is certain, larger than its uncertainty, and large enough to name
-    is_headline: bool
+    doubt: Doubt | None  # why it stands in no headline; None for one that does
     # log odds of an effect that follows a sensor against a smooth drift in time whose cause is not
     # recorded; None for others
     against_drift: float | None = None
+
+    @property
+    def is_headline(self) -> bool:
+        """Whether it is certain, larger than its uncertainty, and large enough to name."""
+        return self.doubt is None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -101,6 +115,15 @@ def geometry_part(
     )
 
 
+def _doubt(step: Step, explained: float, stated: float) -> Doubt | None:
+    """The first reason against a headline; the scatter that an effect takes away is in mm."""
+    if step.p_value >= POLICY.false_alarm:
+        return Doubt.CHANCE
+    if step.worth < POLICY.significant_ratio:
+        return Doubt.UNCERTAIN
+    return Doubt.SMALL if explained <= POLICY.headline_noise_share * stated else None
+
+
 def verdict_parts(
     steps: Sequence[Step],
     left: Sequence[Structure],
@@ -129,9 +152,6 @@ def verdict_parts(
     for step, own in zip(steps[1:], scatters[1:], strict=True):
         assert step.effect is not None
         explained = float(np.sqrt(max(before**2 - own**2, 0.0)))
-        is_large = explained > POLICY.headline_noise_share * repeats.stated
-        is_certain = step.p_value < POLICY.false_alarm
-        is_sized = step.worth >= POLICY.significant_ratio
         named.append(
             NamedEffect(
                 effect=step.effect,
@@ -139,7 +159,7 @@ def verdict_parts(
                 explained=explained,
                 share=min(explained**2 / whole, 1.0),
                 runner_up=step.confusion.runner_up if step.confusion else None,
-                is_headline=bool(is_certain and is_sized and is_large),
+                doubt=_doubt(step, explained, repeats.stated),
                 against_drift=against_drift.get(step.effect.name),
             )
         )

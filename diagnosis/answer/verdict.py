@@ -10,7 +10,7 @@ from matstd.diagnosis.accuracy import Promise, promise
 from matstd.diagnosis.answer.candidates import Candidate
 from matstd.diagnosis.answer.detectable import Detectable
 from matstd.diagnosis.answer.next_measurement import Plan
-from matstd.diagnosis.answer.parts import VerdictParts, geometry_part
+from matstd.diagnosis.answer.parts import Doubt, VerdictParts, geometry_part
 from matstd.diagnosis.answer.steps import Step
 from matstd.diagnosis.answer.trend import Trend
 from matstd.diagnosis.choice import Choice
@@ -156,7 +156,10 @@ class Diagnosis(Tabular):
         return self.laws.after if self.laws is not None and self.laws.laws else self.fit
 
     def _holds_names(self, laws: Learning) -> bool:
-        """Whether all that laws put in the place of names is of the same class as these."""
+        """Whether the search did not distinguish the laws from the names that they would withdraw.
+
+        Such laws are effects of the library themselves.
+        """
         odds = {one.effect: one.log_odds for one in self.candidates}
         own = [odds.get(name, np.inf) for name in laws.of_library]
         named = [odds.get(effect.name, -np.inf) for effect in laws.instead_of]
@@ -171,12 +174,13 @@ class Diagnosis(Tabular):
     def with_laws(self, laws: Learning, before: Prior | None = None) -> Self:
         """The same with laws of what remains.
 
-        The errors to expect and the geometry are those with them: what a law explains, the geometry
-        imitates without it, as the straightness of an axis along which the run drifted. The errors
-        are those of the average over laws that the run does not distinguish, which predicts. Names
-        that they explain better are withdrawn: none of them stands in a headline, and no plan
-        distinguishes a name withdrawn from its rivals. A law that is itself an effect of the
-        library withdraws no name that the search did not distinguish from that effect.
+        The geometry is that with them: what a law explains, the geometry imitates without it, as
+        the straightness of an axis along which the run drifted. The errors to expect, before and
+        after, are of touches left out of one fit each; after, of the average over laws that the run
+        does not distinguish, which predicts. Names that the laws explain better are withdrawn: none
+        of them stands in a headline, and no plan distinguishes a name withdrawn from its rivals. A
+        law that is itself an effect of the library withdraws no name that the search did not
+        distinguish from that effect.
 
         Args:
             before: Estimates of the starting model from an earlier run.
@@ -190,6 +194,7 @@ class Diagnosis(Tabular):
             found = replace(
                 found,
                 promise=promise(laws.saved),
+                promise_before=promise(self.start),
                 geometry=geometry,
                 parts=replace(self.parts, geometry=part),
             )
@@ -197,7 +202,7 @@ class Diagnosis(Tabular):
             return found
         gone = {effect.name for effect in laws.instead_of}
         named = tuple(
-            replace(one, is_headline=one.is_headline and one.effect.name not in gone)
+            replace(one, doubt=Doubt.WITHDRAWN) if one.effect.name in gone else one
             for one in found.parts.named
         )
         parts = replace(found.parts, named=named)

@@ -146,7 +146,7 @@ class Language:
 
     def end(self, name: str) -> str:
         """Last block of a program in millimetres."""
-        return self._form("end", name=name)
+        return self._form("end", name=checked_name(name))
 
     def comment(self, text: str) -> str:
         """Comment block; in Klartext a tilde at its end would continue it on the next line."""

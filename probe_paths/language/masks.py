@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from matstd.probe_paths.language.dialect import TOOL_LENGTH, Q
-from matstd.probe_paths.language.text import MAX_LINE
+from matstd.probe_paths.language.text import MAX_LINE, checked_name
 from matstd.probe_paths.plan import Sensor
 from matstd.twin.errors import BadFile, DesignError
 
@@ -205,6 +205,7 @@ def head_mask(
 
 
 def _head_lines(form: LogForm, name: str, remarks: Sequence[str]) -> list[Fields]:
+    checked_name(name)
     number = _number(form, 6)
     lines: list[Fields] = [(LOG_HEAD, ()), (f"PGM {name}", ())]
     lines += [(remark, ()) for remark in remarks]

@@ -7,7 +7,9 @@ bodies that may carry it, the alternatives, and the names.
 from collections.abc import Sequence
 from functools import partial
 
-from matstd.diagnosis.answer import Plan, Step
+from matstd.diagnosis.answer import Doubt, Plan, Step
+from matstd.diagnosis.policy import POLICY
+from matstd.report.numbers import percent
 from matstd.twin.library import parse_effect, title_of
 from matstd.twin.machine import Chain
 from matstd.twin.model import Effect, Title, is_tunable
@@ -18,6 +20,13 @@ _MAX_WRITTEN_OUT = 4  # bodies, titles or names that are written out; of more, t
 _few = partial(few, most=_MAX_WRITTEN_OUT, last="or")
 
 _BODIES = {"t": "the tool", "w": "the workpiece", "standard": "the standard", "probe": "the probe"}
+
+DOUBTS = {
+    Doubt.CHANCE: "not certain by itself",
+    Doubt.UNCERTAIN: f"less than {POLICY.significant_ratio:g} times its uncertainty",
+    Doubt.SMALL: f"less than {percent(POLICY.headline_noise_share)} of the stated noise",
+}
+"""What an effect is that stands in no headline."""
 
 
 def effect_title(effect: Effect) -> str:

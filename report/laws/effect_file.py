@@ -9,6 +9,7 @@ import numpy as np
 
 from matstd.diagnosis.laws import Estimate, Learning, amplitudes, curve_of, places
 from matstd.report.laws.law_words import amplitude_words, formula_words, place_words, size_words
+from matstd.twin.frames import Array
 from matstd.twin.laws import Driver, Law
 from matstd.twin.units import UM, URAD
 
@@ -150,9 +151,9 @@ def _parameters(learning: Learning, law: Law) -> list[Estimate]:
     found = amplitudes(learning, law)
     if not law.is_curve_alone:
         return found
-    driver = next(f.driver for f in law.factors if f.shape.word == "curve")
-    curve, _ = curve_of(learning, law, driver, driver.values(learning.after.run.touches))
-    size, unit = float(np.abs(curve).max()), law.carrier.unit
+    k = next(k for k, factor in enumerate(law.factors) if factor.shape.word == "curve")
+    size = float(np.abs(_curve(learning, law, k)[1]).max())
+    unit = law.carrier.unit
     return [Estimate(word or "amplitude", size, None, unit) for word in law.carrier.words]
 
 
@@ -243,16 +244,20 @@ def _variable(name: str) -> str:
     return f'driver_of("{name}", touches.chain).values(touches)'
 
 
-def _table(learning: Learning, law: Law, k: int, x: str) -> str:
-    """A curve without a formula as a table to be interpolated in, its largest value 1."""
+def _curve(learning: Learning, law: Law, k: int) -> tuple[Array, Array]:
+    """Knots of a curve without a formula and its values there, in units of the carrier."""
     low, high, length, _ = law.places[law.parts[k][1]]
     flank = CURVE_FLANKS * length * (high - low)
     count = 1 + round(CURVE_KNOTS * (1.0 / length + 2.0 * CURVE_FLANKS))
-    low, high = low - flank, high + flank
-    y, _ = curve_of(learning, law, law.factors[k].driver, np.linspace(low, high, count))
-    y = y / max(float(np.abs(y).max()), 1e-300)
-    knots = f"np.linspace({low:.6g}, {high:.6g}, {count})"
-    values = [f"{v:.3f}" for v in y]
+    x = np.linspace(low - flank, high + flank, count)
+    return x, curve_of(learning, law, law.factors[k].driver, x)[0]
+
+
+def _table(learning: Learning, law: Law, k: int, x: str) -> str:
+    """A curve without a formula as a table to be interpolated in, its largest value 1."""
+    at, y = _curve(learning, law, k)
+    knots = f"np.linspace({at[0]:.6g}, {at[-1]:.6g}, {len(at)})"
+    values = [f"{v:.3f}" for v in y / max(float(np.abs(y).max()), 1e-300)]
     rows = [", ".join(values[i : i + 10]) for i in range(0, len(values), 10)]
     table = ",\n".join(f"{' ' * 12}{row}" for row in rows)
     return f"np.interp({x}, {knots}, [\n{table},\n        ])"

@@ -2,13 +2,15 @@
 
 import shlex
 
-from matstd.diagnosis.answer import Comparison, Diagnosis, Verdict
+from matstd.diagnosis.answer import Comparison, Diagnosis, Doubt, Verdict
 from matstd.report.numbers import plural
 
 
 def diagnosis_step(result: Diagnosis, title: str, is_saved: bool = False) -> str:
     """After a diagnosis; `is_saved` where the model file has what was found."""
     if result.verdict is Verdict.UNDECIDED and result.found:
+        if all(one.doubt is Doubt.SMALL for one in result.parts.named):
+            return "Go on with the starting model: with what was found it predicts hardly better."
         return (
             "Probe at further readings of the axes and diagnose both runs together; they decide "
             "between the effect and errors of the machine that do the same here."

@@ -54,8 +54,8 @@ def diagnosis_meaning(result: Diagnosis) -> str:
         )
     if result.found:
         return (
-            "This run does not decide whether something acts on the machine that the starting "
-            f"model lacks. Without it predictions are off by {before} rms; with it {touched}."
+            "This run does not decide whether the machine has an effect that the starting model "
+            f"lacks. Without it predictions are off by {before} rms; with it {touched}."
         )
     return (
         "This run does not decide whether what remains is noise or an effect: the noise would have "

@@ -8,6 +8,7 @@ from matstd.diagnosis.accuracy import Promise, Repeatability, Scatter
 from matstd.diagnosis.answer import (
     Comparison,
     Diagnosis,
+    Doubt,
     GeometryPart,
     NamedEffect,
     Remainder,
@@ -17,7 +18,7 @@ from matstd.diagnosis.geometry import GeometryRow
 from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.remarks import EffectOfOtherRun
 from matstd.diagnosis.residual import Shape
-from matstd.report.effects import effect_words
+from matstd.report.effects import DOUBTS, effect_words
 from matstd.report.geometry import estimate_words, fault_sentences, quantity_name
 from matstd.report.laws import learnt_words
 from matstd.report.numbers import digits, microns, noun, odds_words, p_value, percent
@@ -40,9 +41,8 @@ def part_lines(result: Diagnosis) -> list[tuple[str, str]]:
     parts = result.parts
     steps = {s.effect.name: s for s in result.steps if s.effect is not None}
     before = result.promise_before if result.has_fallen else None
-    gone = result.withdrawn
-    named = [_named(one, steps[one.effect.name], one.effect in gone) for one in parts.named]
-    beside = "beside the names withdrawn " if gone else ""
+    named = [_named(one, steps[one.effect.name]) for one in parts.named]
+    beside = "beside the names withdrawn " if result.withdrawn else ""
     learnt = "" if result.laws is None else f"; {learnt_words(result.laws)}"
     return [
         ("geometry", _geometry(parts.geometry)),
@@ -72,14 +72,14 @@ def _rows(rows: Sequence[GeometryRow]) -> str:
     return few(words, MAX_WRITTEN_OUT)
 
 
-def _named(one: NamedEffect, step: Step, is_withdrawn: bool) -> str:
+def _named(one: NamedEffect, step: Step) -> str:
     """An effect with its size, its share, its probability by chance and its closest rival."""
     size = sizes(step, 2)
     weight = f"explains {percent(one.share)} of the excess ({microns(one.explained)} rms)"
-    doubt = "" if one.is_headline or is_withdrawn else ", not certain by itself"
+    doubt = f", {DOUBTS[one.doubt]}" if one.doubt in DOUBTS else ""
     by_name = ", added by name" if step.is_named else ""
     inside = ", ".join(word for word in (size, weight, _chance(one.p_value)) if word)
-    gone = "withdrawn: " if is_withdrawn else ""
+    gone = "withdrawn: " if one.doubt is Doubt.WITHDRAWN else ""
     return f"{gone}{effect_words(one.effect)}: {inside}{doubt}{by_name}{_rival(one)}"
 
 

@@ -7,7 +7,7 @@ from matstd.diagnosis.answer import Diagnosis, Step, Verdict, acts_as_instrument
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.laws import Learning
 from matstd.diagnosis.policy import POLICY
-from matstd.report.effects import class_words, words_of_name
+from matstd.report.effects import DOUBTS, class_words, words_of_name
 from matstd.report.laws import held_out_sentence, instead_sentence, law_sentence, rival_sentence
 from matstd.report.numbers import digits, microns
 from matstd.report.words.diagnosis_words import noise_words, sizes, stated_noise, structure_clause
@@ -52,7 +52,8 @@ def _unexplained(diagnosis: Diagnosis) -> str:
 def _fall(diagnosis: Diagnosis) -> str:
     """The error to expect, which falls: of what predicts, so elsewhere first."""
     before, after = diagnosis.promise_before, diagnosis.promise
-    if diagnosis.choice is not None and not diagnosis.fit.test_rows.any():
+    is_chosen = diagnosis.choice is not None and diagnosis.standing is diagnosis.fit
+    if is_chosen and not diagnosis.fit.test_rows.any():
         return (
             "the error of blocks left out, with the choice repeated without each, falls from "
             f"{microns(before.same)} to {microns(after.same)}"
@@ -169,10 +170,11 @@ def _verdict_alone(diagnosis: Diagnosis) -> str:
     if diagnosis.verdict is Verdict.UNEXPLAINED:
         return _unexplained_sentence(diagnosis, [*named, *found])
     if diagnosis.verdict is Verdict.UNDECIDED and doubtful:
-        names = "; ".join(_added(diagnosis, s, 1) for s in others if s.effect)
+        doubts = {n.effect.name: n.doubt for n in diagnosis.parts.named}
+        one = doubts[others[0].name] if doubtful == 1 else None
+        why = "none is certain by itself" if one is None else f"it is {DOUBTS[one]}"
         return (
-            f"This run cannot decide: {names} would reduce the error, but "
-            f"{'it is not' if doubtful == 1 else 'none is'} certain by itself. "
+            f"This run cannot decide: {_plural(doubtful)} would reduce the error, but {why}. "
             f"With {them} {_fall(diagnosis)}.{also}"
         )
     if diagnosis.verdict is Verdict.UNDECIDED:

@@ -17,6 +17,7 @@ from simulator_laws import drawn, law_case
 from matstd.api.diagnosing import compare, diagnose
 from matstd.cli import main
 from matstd.diagnosis import answer
+from matstd.diagnosis.accuracy import Promise
 from matstd.diagnosis.answer import Verdict
 from matstd.diagnosis.files import (
     diagnosis_table,
@@ -309,6 +310,10 @@ def test_a_diagnosis_learns_the_law_of_what_remains(stylus, tmp_path) -> None:
     assert promised.same == pytest.approx(found.promise.same, rel=1e-5)
     assert promised.elsewhere == pytest.approx(found.promise.elsewhere, rel=1e-5)
     assert 0.8 < compare(second, found.model).rms / promised.elsewhere < 1.25
+    # before and after are of one kind, also where a choice stated its own blocks before
+    blocks = Promise(99.0 * UM, 99.0 * UM, ())
+    again = replace(found, laws=None, promise_before=blocks).with_laws(found.laws)
+    assert again.promise_before.same == pytest.approx(found.start.test_rms)
     # the geometry beside the law predicts, that of the start had taken a part of it
     assert compare(second, found.model).rms < 0.9 * compare(second, model_of(found.start)).rms
 

@@ -8,7 +8,7 @@ from marks import slow
 from matstd.diagnosis.answer import Verdict, diagnose
 from matstd.diagnosis.policy import POLICY
 from matstd.report.run_view import diagnosis_step
-from matstd.report.verdict import diagnosis_meaning
+from matstd.report.verdict import diagnosis_meaning, part_lines
 from matstd.report.words import verdict_sentence
 from matstd.twin.library import ordinary_model, parse_effect, proposals
 from matstd.twin.model import Model
@@ -61,7 +61,13 @@ def test_a_sag_that_a_zero_may_be_is_undecided(weight, verdict) -> None:
     assert step.worth < POLICY.significant_ratio
     assert found.parts.headline == ()
     said = verdict_sentence(found)
-    assert said.startswith("This run cannot decide: sag of joint B")
-    assert "[joint-sag(B)] would reduce the error, but it is not certain by itself" in said
+    why = "less than 2 times its uncertainty"
+    assert said.startswith(
+        f"This run cannot decide: one effect would reduce the error, but it is {why}"
+    )
+    assert "joint-sag" not in said  # no headline names it, the part on names does
+    named = dict(part_lines(found))["named effects"]
+    assert named.startswith("sag of joint B")
+    assert f", {why}" in named
     assert "further readings" in diagnosis_step(found, "run.csv")
-    assert "does not decide whether something acts" in diagnosis_meaning(found)
+    assert "does not decide whether the machine has an effect" in diagnosis_meaning(found)

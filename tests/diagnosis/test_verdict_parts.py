@@ -14,12 +14,13 @@ from matstd.diagnosis.accuracy import (
     promise,
     repeatability,
 )
-from matstd.diagnosis.answer import Step, diagnose
+from matstd.diagnosis.answer import Doubt, Step, Verdict, diagnose
 from matstd.diagnosis.answer.parts import verdict_parts
 from matstd.diagnosis.fit import Reported, Role, fit_run
 from matstd.diagnosis.geometry import LearntGeometry
 from matstd.diagnosis.residual import Shape, Structure
 from matstd.report.numbers import odds_words
+from matstd.report.run_view import diagnosis_step
 from matstd.report.verdict import part_lines
 from matstd.report.verdict.part_words import _odds
 from matstd.report.words import verdict_sentence
@@ -82,17 +83,19 @@ def test_more_left_than_named_is_unexplained(hidden):
 
 
 @pytest.mark.parametrize(
-    ("scatter", "p", "is_significant", "is_headline"),
+    ("scatter", "p", "is_significant", "doubt"),
     [
-        (4.0, 1e-4, True, True),
-        (4.0, 2e-3, True, False),  # chance of more than one in a thousand
-        (4.0, 1e-9, False, False),  # within twice its uncertainty
-        (4.9996, 1e-9, True, False),  # 0.063 um beside a stated noise of 1
+        (4.0, 1e-4, True, None),
+        (4.0, 2e-3, True, Doubt.CHANCE),  # of more than one in a thousand
+        (4.0, 1e-9, False, Doubt.UNCERTAIN),  # within twice its uncertainty
+        (4.9996, 1e-9, True, Doubt.SMALL),  # 0.063 um beside a stated noise of 1
     ],
 )
-def test_what_may_stand_in_a_headline(hidden, scatter, p, is_significant, is_headline):
+def test_what_may_stand_in_a_headline(hidden, scatter, p, is_significant, doubt):
     step = weighed(hidden.touches.chain, "backlash(X)", scatter, p, is_significant)
-    assert parts(5.0, [step]).named[0].is_headline is is_headline
+    (found,) = parts(5.0, [step]).named
+    assert found.doubt is doubt
+    assert found.is_headline is (doubt is None)
 
 
 def test_lack_of_fit_is_judged_by_repeats():
@@ -237,8 +240,24 @@ def test_the_headline_names_only_what_is_certain(hidden):
     both = [f"backlash({axis})" for axis in "XY"]
     assert sorted(e.name for e in found.found) == both
     assert all(name in verdict_sentence(found) for name in both)
-    small = tuple(replace(n, is_headline=n.effect.name == both[0]) for n in found.parts.named)
+    small = tuple(
+        replace(n, doubt=None if n.effect.name == both[0] else Doubt.SMALL)
+        for n in found.parts.named
+    )
     one = replace(found, parts=replace(found.parts, named=small))
     assert both[1] not in verdict_sentence(one)
     assert "one effect: " in verdict_sentence(one)
     assert "(one effect not certain or too small to name)" in verdict_sentence(one)
+
+
+def test_a_small_effect_is_called_small(hidden):
+    """Certain, three times its uncertainty, and yet hardly any of the noise: no open question."""
+    t = hidden.touches
+    effect = parse_effect("backlash(X)", t.chain)
+    moved = Model(t.chain, [effect]).columns(t) @ np.array([8.0 * UM])
+    found = diagnose(replace(hidden, deviation=hidden.deviation + moved), candidates=[effect])
+    named = tuple(replace(one, doubt=Doubt.SMALL) for one in found.parts.named)
+    small = replace(found, parts=replace(found.parts, named=named), verdict=Verdict.UNDECIDED)
+    assert "but it is less than 10 % of the stated noise" in verdict_sentence(small)
+    assert ", less than 10 % of the stated noise" in dict(part_lines(small))["named effects"]
+    assert diagnosis_step(small, "run.csv").startswith("Go on with the starting model")

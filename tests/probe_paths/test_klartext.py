@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from matstd.artefact.tool import Probe
-from matstd.probe_paths.language import Datum, Dialect, Kind, Touch, read_blocks
+from matstd.probe_paths.language import Datum, Dialect, Kind, Touch, head_mask, read_blocks
 from matstd.probe_paths.language.dialect import CYCLE_NAMES, DISTANCE_WORDS
 from matstd.probe_paths.language.klartext import DATUM_SHIFT_OFF, KLARTEXT, PLANE_OFF, plane
 from matstd.probe_paths.language.text import signed
@@ -112,3 +112,10 @@ def test_a_heading_survives_its_lines():
 def test_a_name_with_blanks_cannot_stand_in_a_heading():
     with pytest.raises(DesignError, match="1 to 24 letters"):
         _ = Heading("my standard", Setup("a"), Probe(3.0, 160.0)).lines
+
+
+@pytest.mark.parametrize("name", ["1_STARTS_WITH_A_DIGIT", "WITH BLANK", "A" * 40, ""])
+def test_a_name_that_no_software_takes_is_refused_in_program_and_mask(name) -> None:
+    for made in (KLARTEXT.begin, KLARTEXT.end, lambda name: head_mask(KLARTEXT.log, name, ())):
+        with pytest.raises(DesignError, match=r"program name .* expected a letter"):
+            made(name)

@@ -92,10 +92,10 @@ def _next(args: argparse.Namespace, found: Diagnosis) -> tuple[str, str]:
         words = _again(args, runs=("new.csv",))
         return words, f"after measuring {plan} into new.csv"
     if found.verdict is Verdict.UNDECIDED:
-        words = _again(args, runs=("again.csv",))
+        why = "after the same programs have run again: repeated touches show the noise"
         if found.found:
-            return words, "after another run with other readings of the axes"
-        return words, "after the same programs have run again: repeated touches show the noise"
+            why = "after another run with other readings of the axes"
+        return _again(args, runs=("again.csv",)), why
     tool = np.median(found.run.touches.length)
     tables = Path(args.output).parent / "tables"
     words = called("compensate", model, "--tool-length", f"{tool:g}", "--tables", tables)
