@@ -85,9 +85,11 @@ def write_setup_page(
     workshop = Heading(
         standard=standard.name, setup=plan.setup, probe=plan.probe, workshop=plan.options.workshop
     ).workshop_hash
+    has_bodies = len(plan.options.workshop.solids) > 1  # beside the table
+    red = "Red: clamps and fixtures that the programs avoid. " if has_bodies else ""
     drawing = (
-        "Blue: the standard and its spheres, with its own x and y. Red: clamps and fixtures that "
-        "the programs avoid. The programs do not know any object that is not drawn here."
+        f"Blue: the standard and its spheres, with its own x and y. {red}"
+        "The programs do not know any object that is not drawn here."
     )
     content = Page(
         heading=f"Set-up sheet: {standard.name}{serial} on {plan.chain.name}{which}",

@@ -246,7 +246,7 @@ def draw_effect(fit: Fit, effect: Effect, colour: str = BLUE) -> Figure:
     left.set_ylim(low, high)
     right.set_ylim(0.5 * (low - high), 0.5 * (high - low))  # about zero, as large a scale
     left.set_ylabel(quantity)
-    left.legend(fontsize=8, frameon=False)
+    left.legend(fontsize=8, framealpha=0.85, edgecolor="none")
     return drawn
 
 

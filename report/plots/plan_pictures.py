@@ -21,7 +21,10 @@ def draw_setup(plan: TouchPlan) -> Figure:
 
     Of a table much larger than what stands on it the middle is drawn large, and the whole small.
     """
+    from matplotlib.patheffects import withStroke
+
     drawn = figure(4.6)
+    halo = {"color": INK, "path_effects": [withStroke(linewidth=2.5, foreground="white")]}
     T_face_table = inverse(table_face(plan.setup.T_table_artefact))
     T_face_artefact = T_face_table @ plan.setup.T_table_artefact
     base = apply(T_face_artefact, _outline(plan.standard.base.body))
@@ -47,18 +50,18 @@ def draw_setup(plan: TouchPlan) -> Figure:
         corners = np.array([[-a, -b, 0.0], [a, -b, 0.0], [a, b, 0.0], [-a, b, 0.0], [-a, -b, 0.0]])
         face = apply(T_face_artefact @ patch.T_artefact_patch, corners)
         top.fill(*face[:, :2].T, facecolor=BLUE, alpha=0.15, edgecolor=BLUE, lw=0.8)
-        top.annotate(patch.name, face[:4, :2].mean(axis=0), color=INK, fontsize=7, ha="center",
-                     va="center")  # fmt: skip
+        middle = face[:4, :2].mean(axis=0)
+        top.annotate(patch.name, middle, fontsize=7, ha="center", va="center", **halo)
     for sphere in plan.standard.spheres:
         centre = apply(T_face_artefact, sphere.centre[None])[0]
-        top.plot(*centre[:2], "o", color=BLUE, ms=4)
-        top.annotate(sphere.name, centre[:2], color=INK, fontsize=7, xytext=(4, 3),
-                     textcoords="offset points")  # fmt: skip
+        top.plot(*centre[:2], "o", color=BLUE, ms=4, zorder=4)
+        top.annotate(sphere.name, centre[:2], fontsize=7, xytext=(4, 3),
+                     textcoords="offset points", **halo)  # fmt: skip
     for at, name in zip(np.eye(3)[:2] * 60.0, "xy", strict=True):
         ends = apply(T_face_artefact, np.array([np.zeros(3), at]))
         # centred on the line of the arrow, which else leans by half of the letter
-        top.annotate(name, ends[0, :2], ends[1, :2], color=INK, ha="center", va="center",
-                     arrowprops={"arrowstyle": "<-", "color": INK})  # fmt: skip
+        top.annotate(name, ends[0, :2], ends[1, :2], ha="center", va="center",
+                     arrowprops={"arrowstyle": "<-", "color": INK}, **halo)  # fmt: skip
     top.set(aspect="equal", xlabel="x of the table in mm", ylabel="y of the table in mm")
     at_zero = ", rotary axes at zero" * bool(plan.chain.rotary_axes)
     top.set_title(f"from above{at_zero}", loc="left")
