@@ -23,7 +23,16 @@ sys.dont_write_bytecode = False
 # otherwise: a third of the time of the collection, a quarter of that of the tests
 gc.set_threshold(50_000, 20, 20)
 
-pytest_plugins = ["bench", "browser", "commands", "firefox", "machines", "standards", "runs"]
+pytest_plugins = [
+    "bench",
+    "browser",
+    "commands",
+    "firefox",
+    "machines",
+    "standards",
+    "runs",
+    "unchanged",
+]
 """Fixtures that the tests of several rooms share, in `tests/fixtures`."""
 
 

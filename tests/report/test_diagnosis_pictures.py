@@ -7,6 +7,8 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from figures import render_alone
+from unchanged import page_text
 
 from matstd.diagnosis.answer import Verdict, compare, diagnose
 from matstd.diagnosis.residual import (
@@ -51,16 +53,33 @@ def compared(strange):
 
 
 @pytest.fixture(scope="module")
-def written(warm, tmp_path_factory):
+def figures():
+    """What the figures of the page consist of."""
+    return {}
+
+
+@pytest.fixture(scope="module")
+def written(warm, figures, tmp_path_factory):
     """Folder of its page."""
     place = tmp_path_factory.mktemp("page")
-    write_diagnosis_page(warm, place, "run & file.csv", np.random.default_rng(0))
+    with pytest.MonkeyPatch.context() as patch:
+        recorded = render_alone(patch, "")
+        write_diagnosis_page(warm, place, "run & file.csv", np.random.default_rng(0))
+    figures |= recorded
     return place
 
 
 @pytest.fixture(scope="module")
 def page(written):
     return (written / "report.html").read_text(encoding="utf-8")
+
+
+def test_the_page_is_what_it_was(page, unchanged):
+    unchanged(page_text(page))
+
+
+def test_its_figures_are_what_they_were(written, figures, unchanged):
+    unchanged("\n".join(f"{name}: {figures[name]}" for name in sorted(figures)))
 
 
 def addresses(page):
