@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from unchanged import table_text
 
 from matstd.cli import main
 from matstd.twin.files import read_run
@@ -114,7 +115,9 @@ NUMBERS = {"pivot": "-419.9903", "ball": "3.0006"}
     ("name", "mistake", "true"),
     [("pivot", "point of a rotary axis", -2.0), ("ball", "ball radius", 0.1)],
 )
-def test_a_wrong_number_is_named_with_what_to_write(name, mistake, true, tmp_path, capsys):
+def test_a_wrong_number_is_named_with_what_to_write(
+    name, mistake, true, tmp_path, capsys, unchanged
+):
     out = tmp_path / "out"
     assert main(["compare", str(WRONG / f"{name}.csv"), "--no-report", "-o", str(out)]) == 0
     message = " ".join(capsys.readouterr().out.split())
@@ -126,6 +129,7 @@ def test_a_wrong_number_is_named_with_what_to_write(name, mistake, true, tmp_pat
     start = "this run cannot distinguish these" if name == "pivot" else "to copy: "
     (line,) = [t for t in message.split(" - ") if t.startswith(start) and NUMBERS[name] in t]
     assert line.strip() in quoted(WRONG)
+    unchanged(table_text(table))
 
 
 def test_an_axis_the_other_way_is_refused_with_the_line_to_write(tmp_path, capsys):
@@ -145,7 +149,7 @@ def test_an_axis_the_other_way_is_refused_with_the_line_to_write(tmp_path, capsy
         pytest.param([], id="the library", marks=pytest.mark.slow),
     ],
 )
-def test_the_machine_of_1995_gives_its_errors_back(only, tmp_path):
+def test_the_machine_of_1995_gives_its_errors_back(only, tmp_path, unchanged):
     planted = module(OLD / "make_run.py")
     out = tmp_path / "out"
     words = ["diagnose", str(OLD / "run.csv"), "--auto", "--no-report", "--no-learn"]
@@ -165,6 +169,7 @@ def test_the_machine_of_1995_gives_its_errors_back(only, tmp_path):
         ppm = planted.SLOPES[symbol] * 1e6
         assert abs(row["value_ppm"] - ppm) < COVERED * row["uncertainty_ppm"]
         assert f"{row['value_ppm']:.0f} ± {row['uncertainty_ppm']:.0f} ppm" in quoted(OLD)
+    unchanged(table_text(found))
 
 
 def test_the_jump_and_the_drift_of_the_trend_are_found_and_nothing_else():

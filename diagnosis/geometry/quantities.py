@@ -47,9 +47,14 @@ class Functional:
 
 
 def peak_to_valley(curve: Array, theta: Array) -> Array:
-    """Weights (P,) of the largest less the smallest value of a curve (N, P)."""
-    values = curve @ theta
-    return np.asarray(curve[int(np.argmax(values))] - curve[int(np.argmin(values))])
+    """Weights (P,) of the largest less the smallest value of a curve (N, P), mm or rad.
+
+    A curve of which the run says nothing is zero but for rounding, which differs between
+    processors; its weights are those of its ends.
+    """
+    values = np.round(curve @ theta, 12)
+    high, low = (int(np.argmax(values)), int(np.argmin(values))) if np.ptp(values) else (-1, 0)
+    return np.asarray(curve[high] - curve[low])
 
 
 def is_geometry(effect: Effect) -> bool:

@@ -87,7 +87,9 @@ class Descriptions:
                 # the ball higher up is a shorter tool
                 size = -change if name == "length" else change
                 found.append((left, FoundNumber(name, size, strength**-0.5)))
-        return tuple(number for _, number in sorted(found, key=lambda pair: pair[0]))
+        # equal to rounding, by name
+        found.sort(key=lambda pair: (round(pair[0], 6), pair[1].name))
+        return tuple(number for _, number in found)
 
 
 def _numbers(touches: Touches) -> Iterator[Effect]:

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from simulator_experiment import MACHINES
 from simulator_runs import read_runs, simulated_runs
+from unchanged import table_text
 
 from matstd.cli import main
 from matstd.diagnosis.accuracy import probed_volume
@@ -166,7 +167,7 @@ def of(found, symbol):
 
 
 @pytest.mark.usefixtures("unrendered")
-def test_a_jump_is_found_where_it_was_planted(jumped, tmp_path, capsys):
+def test_a_jump_is_found_where_it_was_planted(jumped, tmp_path, capsys, unchanged):
     out = tmp_path / "out"
     assert main(["trend", str(jumped), "-o", str(out)]) == 0
     found = json.loads((out / "trend.json").read_text("utf-8"))
@@ -186,6 +187,7 @@ def test_a_jump_is_found_where_it_was_planted(jumped, tmp_path, capsys):
     page = (out / "report.html").read_text("utf-8")
     assert "What it means" in page
     assert "no longer in the state of the first run" in page
+    unchanged(table_text(found))
 
 
 def test_nothing_is_found_where_nothing_changed(tmp_path, capsys):

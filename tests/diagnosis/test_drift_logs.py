@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from unchanged import table_text
 
 from matstd.cli import main
 from matstd.diagnosis.drift import lead, read_law, read_log, read_probed, varying
@@ -85,7 +86,7 @@ def test_probings_stand_where_the_log_was(tmp_path):
 
 
 @pytest.mark.usefixtures("unrendered")
-def test_the_command_writes_a_law_that_predicts_the_same_again(tmp_path, capsys):
+def test_the_command_writes_a_law_that_predicts_the_same_again(tmp_path, capsys, unchanged):
     log = written(tmp_path / "a.csv", rows_of())
     out = tmp_path / "out"
     assert main(["thermal", str(log), "--probe-every", "1", "-o", str(out)]) == 0
@@ -101,6 +102,7 @@ def test_the_command_writes_a_law_that_predicts_the_same_again(tmp_path, capsys)
     first, second = ((p / "drift.csv").read_text() for p in (out, again))
     assert first == second
     assert read_law(law).components == ("z",)
+    unchanged(table_text(saved))
 
 
 @pytest.mark.parametrize(

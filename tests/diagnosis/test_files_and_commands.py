@@ -1,12 +1,14 @@
 """Files of a diagnosis as the contract states them, and the commands on good and on bad input."""
 
 import json
+import re
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from run_text import every
 from simulator_case import simulate_case
+from unchanged import table_text
 
 from matstd.cli import main
 from matstd.diagnosis.files import model_text, read_model
@@ -207,6 +209,11 @@ def saved(fitted, tmp_path_factory):
     path = tmp_path_factory.mktemp("model") / "model.toml"
     path.write_text(model_text(fit, "run.csv"), encoding="utf-8")
     return fit, path
+
+
+def test_the_files_are_what_they_were(saved, table, unchanged) -> None:
+    model = re.sub(r"(?m)^  \[.*\n", "", saved[1].read_text(encoding="utf-8"))  # no covariances
+    unchanged("\n".join([model, table_text(table)]))
 
 
 def test_a_model_read_back_predicts_the_same(saved, case) -> None:

@@ -9,8 +9,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from simulator_experiment import random_experiment, random_noise
+from unchanged import table_text
 
 from matstd.diagnosis.answer import Verdict, diagnose
+from matstd.diagnosis.files import diagnosis_table
 from matstd.diagnosis.fit import fit_run
 from matstd.diagnosis.remarks import What
 from matstd.report.words import verdict_sentence
@@ -100,6 +102,15 @@ def test_most_single_effects_are_named_themselves_first(diagnosed) -> None:
     """Six of six, but for a lag, which any component of the same place and direction imitates."""
     first = [diagnosed(*SINGLE[n], (n,)).found[0].name == n for n in SINGLE]
     assert sum(first) >= len(first) - 1
+
+
+@pytest.mark.parametrize(
+    "key",
+    [NOTHING, (*SINGLE["thermal-lag(EXC)"], ("thermal-lag(EXC)",)), WEAK],
+    ids=["nothing", "lag", "weak"],
+)
+def test_the_answer_is_what_it_was(diagnosed, key, unchanged) -> None:
+    unchanged(table_text(diagnosis_table(diagnosed(*key))))
 
 
 def test_signs(case) -> None:

@@ -13,6 +13,7 @@ import simulator_effects as effects
 from simulator import probe, run_text
 from simulator_case import read_back
 from simulator_experiment import DURATION, MACHINES, STATED_NOISE, placed, random_experiment
+from unchanged import table_text
 
 from matstd.cli import main
 from matstd.compensation.field import MachineErrors
@@ -66,7 +67,7 @@ def compared(visits, run, out):
     return json.loads((out / "comparison.json").read_text(encoding="utf-8"))
 
 
-def test_a_slip_of_one_run_is_not_predicted_for_another(visits, tmp_path, capsys):
+def test_a_slip_of_one_run_is_not_predicted_for_another(visits, tmp_path, capsys, unchanged):
     """Applied to a run in which nothing slipped, the slip would leave eight times the noise."""
     found = compared(visits, "second", tmp_path / "a")
     said = " ".join(capsys.readouterr().out.split())
@@ -85,6 +86,7 @@ def test_a_slip_of_one_run_is_not_predicted_for_another(visits, tmp_path, capsys
     again = re.search(same, said)
     assert again
     assert float(again[1]) == pytest.approx(before, rel=0.03)
+    unchanged(table_text(found))
 
 
 def test_the_run_with_the_slip_has_the_figures_of_its_diagnosis(visits, tmp_path, capsys):

@@ -10,6 +10,7 @@ from simulator_case import named
 from simulator_experiment import MACHINES
 from simulator_machine import read_machine
 from simulator_runs import read_runs, simulated_runs
+from unchanged import table_text
 
 import matstd
 from matstd.cli import main
@@ -244,7 +245,7 @@ def folder(tmp_path_factory):
 
 
 def test_the_command_reports_what_changed_and_saves_the_machine_as_it_is_now(
-    folder, tmp_path, capsys, rendered_alone
+    folder, tmp_path, capsys, rendered_alone, unchanged
 ) -> None:
     rendered_alone("trend")
     files = [str(folder / f"{n}.csv") for n in ("spring", "autumn")]
@@ -270,6 +271,7 @@ def test_the_command_reports_what_changed_and_saves_the_machine_as_it_is_now(
         assert "was learnt from this very run" in " ".join(capsys.readouterr().out.split())
         errors[to.name] = json.loads((to / "comparison.json").read_text())["rms_um"]
     assert errors["autumn"] < 1.2 * NOISE / UM < errors["spring"]
+    unchanged(table_text(table))
 
 
 def test_a_run_is_held_out_by_its_name(folder, tmp_path, capsys) -> None:
