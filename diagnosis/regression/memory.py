@@ -185,7 +185,7 @@ def likely_memory(
 
         # past a correlation of 0.9 its distance from 1 is what matters: atanh spaces both evenly
         bounds = (0.02, float(np.arctanh(MAX_CORRELATION)))
-        found = minimize_scalar(loss, bounds=bounds, method="bounded", options={"xatol": 0.02})
+        found = minimize_scalar(loss, bounds=bounds, method="bounded", options={"xatol": 1e-4})
         gain = -float(found.fun) - white
         if gain > best[1]:
             best = (_with(kind, float(found.x)), gain)

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from marks import slow
+from unchanged import answer_text
 
 from matstd.diagnosis.answer import Verdict, diagnose
 from matstd.diagnosis.evidence import ScaledEffect
@@ -49,7 +50,7 @@ def slipped(run, rows):
 
 
 @pytest.mark.parametrize("side", ["start", *slow("end")])
-def test_a_slip_three_touches_from_an_edge_is_named(run, side) -> None:
+def test_a_slip_three_touches_from_an_edge_is_named(run, side, unchanged) -> None:
     rows = in_time(run.touches, 1)
     rows = rows[:BESIDE] if side == "start" else rows[-BESIDE:]
     some = ["artefact-slip", "backlash(X)", "drift", "probe-radius"]
@@ -62,6 +63,7 @@ def test_a_slip_three_touches_from_an_edge_is_named(run, side) -> None:
     before, after = (rows[-1], rows[-1] + 1) if side == "start" else (rows[0] - 1, rows[0])
     assert times[before] <= found.instant <= times[after]
     assert not d.fit.gross.rows[rows].any()
+    unchanged(answer_text(d))
 
 
 def test_the_same_touches_scattered_are_gross_errors(run) -> None:

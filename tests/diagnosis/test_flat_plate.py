@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from flat_plate import HEIGHT, lag, write_plate
 from marks import slow
+from unchanged import answer_text
 
 from matstd.diagnosis.answer import Verdict, diagnose
 from matstd.diagnosis.laws import learn_laws
@@ -29,13 +30,14 @@ def test_commanded_readings_are_those_of_the_plane(tmp_path):
 
 
 @pytest.mark.parametrize(("seed", "tilt"), [(0, 0.0), (1, 1e-4), *slow((1, 0.0), (2, 5e-4))])
-def test_noise_of_a_plate_is_noise(tmp_path, seed, tilt):
+def test_noise_of_a_plate_is_noise(tmp_path, seed, tilt, unchanged):
     """Also of a plate that leans by 0.15 mm, over whose height fine periods were scanned."""
     result = diagnose(read_run(write_plate(tmp_path, seed, lambda x, y, t: tilt * x)))
     assert result.verdict is Verdict.NONE, verdict_sentence(result)
+    unchanged(answer_text(result))
 
 
-def test_a_lag_behind_a_plate_is_found(tmp_path):
+def test_a_lag_behind_a_plate_is_found(tmp_path, unchanged):
     """It was a positioning error of Z of 14 µm with p = 1e-295."""
     result = diagnose(read_run(write_plate(tmp_path, 3, lag)))
     assert result.verdict is Verdict.MISSING
@@ -44,6 +46,7 @@ def test_a_lag_behind_a_plate_is_found(tmp_path):
     reported = {r.quantity: r.value for r in step.reported}
     assert abs(reported["amplitude"] - 10.0) < 1.5  # the tip grows down, the plane is met lower
     assert abs(reported["tau"] - 5.0) < 1.5
+    unchanged(answer_text(result))
 
 
 def test_noise_that_nothing_shows_is_undecided(tmp_path):
@@ -57,10 +60,11 @@ def test_noise_that_nothing_shows_is_undecided(tmp_path):
     assert all(line in words for line in lines)
 
 
-def test_repeats_show_the_noise(tmp_path):
+def test_repeats_show_the_noise(tmp_path, unchanged):
     result = diagnose(read_run(write_plate(tmp_path, 5, noise=4.0, again=2)))
     assert result.verdict is Verdict.NONE
     assert len(result.repeat) == 0
+    unchanged(answer_text(result))
 
 
 def test_a_step_over_a_plate_is_no_wave_of_the_axis_that_stands(tmp_path):

@@ -9,10 +9,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from simulator_experiment import random_experiment, random_noise
-from unchanged import table_text
+from unchanged import answer_text
 
 from matstd.diagnosis.answer import Verdict, diagnose
-from matstd.diagnosis.files import diagnosis_table
 from matstd.diagnosis.fit import fit_run
 from matstd.diagnosis.remarks import What
 from matstd.report.words import verdict_sentence
@@ -110,7 +109,7 @@ def test_most_single_effects_are_named_themselves_first(diagnosed) -> None:
     ids=["nothing", "lag", "weak"],
 )
 def test_the_answer_is_what_it_was(diagnosed, key, unchanged) -> None:
-    unchanged(table_text(diagnosis_table(diagnosed(*key))))
+    unchanged(answer_text(diagnosed(*key)))
 
 
 def test_signs(case) -> None:
@@ -160,7 +159,7 @@ def test_two_at_once(case, diagnosed) -> None:
     assert rms[2] == pytest.approx(added_noise(*TWO[:2]), rel=HELD_OUT)
 
 
-def test_an_effect_outside_the_library_is_called_unexplained(case) -> None:
+def test_an_effect_outside_the_library_is_called_unexplained(case, unchanged) -> None:
     """A pump that runs half of the time: no effect of the library, a pattern in time."""
     d = diagnose(case(*UNKNOWN).run[::3])
     assert d.verdict is Verdict.UNEXPLAINED
@@ -169,6 +168,7 @@ def test_an_effect_outside_the_library_is_called_unexplained(case) -> None:
     assert d.left
     assert d.depends_on[0].p_value < 1e-4
     assert verdict_sentence(d).startswith("A residual remains")
+    unchanged(answer_text(d))
 
 
 def test_below_the_limit_nothing_is_claimed_and_the_limit_is_reported(case, diagnosed) -> None:

@@ -7,6 +7,7 @@ import pytest
 from marks import slow
 from mpmath import mp
 from scipy.linalg import block_diag
+from unchanged import answer_text
 
 from matstd.diagnosis.answer import Verdict, diagnose
 from matstd.diagnosis.files import model_text
@@ -187,7 +188,7 @@ def test_rows_that_count_for_less_widen_what_is_reported(noisy) -> None:
     assert 2.0 < ratio.max() < 3.5
 
 
-def test_noise_that_remembers_is_said_to_and_nothing_is_named(noisy, tmp_path) -> None:
+def test_noise_that_remembers_is_said_to_and_nothing_is_named(noisy, tmp_path, unchanged) -> None:
     few = proposals(noisy.touches, ("backlash", "thermal-lag", "drift"))
     result = diagnose(noisy, candidates=few)
     assert result.verdict is Verdict.NONE
@@ -201,6 +202,7 @@ def test_noise_that_remembers_is_said_to_and_nothing_is_named(noisy, tmp_path) -
     )
     (tmp_path / "model.toml").write_text(model_text(result.fit, "run.csv"), encoding="utf-8")
     assert "held_out_um" in (tmp_path / "model.toml").read_text(encoding="utf-8")
+    unchanged(answer_text(result))
 
 
 def test_evidence_beside_columns_of_a_wide_prior_is_that_of_all_digits() -> None:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from made_up import gauge_touches
 from scipy.integrate import solve_ivp
+from unchanged import answer_text
 
 from matstd.diagnosis.answer import compare, diagnose
 from matstd.diagnosis.choice import candidate_effects
@@ -45,7 +46,7 @@ def run() -> Run:
     return Run(touches, deviation * UM, np.full(N, 0.5 * UM))
 
 
-def test_a_lag_after_an_own_column_is_found_with_its_size(run, tmp_path) -> None:
+def test_a_lag_after_an_own_column_is_found_with_its_size(run, tmp_path, unchanged) -> None:
     kinds = ("thermal-lag", "follows", "thermal-field")
     result = diagnose(
         run, candidates=[e for e in candidate_effects(run.touches) if e.kind in kinds]
@@ -68,6 +69,7 @@ def test_a_lag_after_an_own_column_is_found_with_its_size(run, tmp_path) -> None
     np.testing.assert_allclose(lag.response(other), 10.0 * lag.response(run.touches))
     again = compare(run, saved.model, saved.estimates)
     assert again.rms < 1.1 * result.fit.rms
+    unchanged(answer_text(result))
 
 
 def test_a_field_of_own_columns_predicts_what_a_lag_between_its_own_does(run) -> None:

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from made_up import run_of
+from unchanged import answer_text
 
 from matstd.diagnosis.answer import Verdict, diagnose
 from matstd.diagnosis.answer.alike import even_step
@@ -62,7 +63,7 @@ def test_a_fine_log_shows_a_short_period(period: float) -> None:
     ],
 )
 def test_a_fine_log_of_many_rows_shows_two_periods(
-    encoder: float, expected: list[tuple[str, float]]
+    encoder: float, expected: list[tuple[str, float]], unchanged
 ) -> None:
     """A screw of 2 mm and an encoder, written down while the axis moves evenly."""
     rng = np.random.default_rng(4)
@@ -77,6 +78,7 @@ def test_a_fine_log_of_many_rows_shows_two_periods(
     assert [name for _, name in waves] == [name for name, _ in expected]
     assert [p for p, _ in waves] == pytest.approx([p for _, p in expected], rel=1e-4)
     assert found.fit.rms < 0.055 * UM
+    unchanged(answer_text(found))
 
 
 def evenly_timed(run: Run, step: float = 0.1) -> Run:
@@ -138,7 +140,7 @@ def test_effects_of_a_log_do_not_cancel_one_another() -> None:
         assert size.u < 1.0
 
 
-def test_even_targets_report_every_period_that_looks_alike() -> None:
+def test_even_targets_report_every_period_that_looks_alike(unchanged) -> None:
     run = positioning(np.arange(5.0, 300.0, 6.0), 2.5, 8.0 * UM)
     found = diagnose(run, rng=np.random.default_rng(0))
     confusion = found.steps[1].confusion
@@ -167,10 +169,11 @@ def test_even_targets_report_every_period_that_looks_alike() -> None:
         there = np.hstack([np.sin(wave), np.cos(wave)]) @ theta
         off = there - 8.0 * np.sin(2.0 * np.pi * x / 2.5 + 0.4)
         assert np.sqrt(np.mean(off**2)) > 2.0
+    unchanged(answer_text(found))
 
 
 @pytest.mark.parametrize(("pitch", "named"), [(10.0, 10.0), (5.0, 2.5), (None, 15.0)])
-def test_a_stated_pitch_names_the_period(pitch: float | None, named: float) -> None:
+def test_a_stated_pitch_names_the_period(pitch: float | None, named: float, unchanged) -> None:
     """10 mm reads as 2.5 mm does, which is half of 5 mm; without a pitch the longest is named."""
     run = positioning(np.arange(5.0, 300.0, 6.0), 2.5, 8.0 * UM)
     if pitch is not None:
@@ -183,6 +186,7 @@ def test_a_stated_pitch_names_the_period(pitch: float | None, named: float) -> N
     assert confusion.alike.pitch == pitch
     own = next(r.value for r in found.steps[1].reported if r.quantity == "period")
     assert own == pytest.approx(named, rel=2e-3)
+    unchanged(answer_text(found))
 
 
 def test_uneven_targets_determine_one_period() -> None:
@@ -241,7 +245,7 @@ def test_even_step_by_hand() -> None:
     assert even_step(np.array([3.0, 9.0, 17.0, 27.0])) is None
 
 
-def test_a_stated_pitch_is_named_though_hundreds_of_periods_explain_few_targets() -> None:
+def test_a_stated_pitch_is_named_though_hundreds_of_periods_explain_few_targets(unchanged) -> None:
     """Eleven uneven targets 39 mm apart: more periods do as well than can be looked at closely."""
     rng = np.random.default_rng(7)
     targets = np.round(np.linspace(5.0, 395.0, 11) + rng.uniform(-1.5, 1.5, 11), 1)
@@ -256,6 +260,7 @@ def test_a_stated_pitch_is_named_though_hundreds_of_periods_explain_few_targets(
     assert confusion.alike is not None
     assert confusion.alike.pitch == 10.0
     assert len(confusion.alike.periods) > 3
+    unchanged(answer_text(found))
 
 
 def test_the_true_period_is_named_or_listed_where_targets_are_few_and_uneven() -> None:

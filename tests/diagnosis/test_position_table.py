@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from marks import slow
+from unchanged import answer_text
 
 from matstd.diagnosis.answer import acts_as_instrument, diagnose
 from matstd.diagnosis.evidence import ScaledEffect
@@ -82,7 +83,7 @@ def positioning(name: str, cycles: int = 6, seed: int = 1) -> Run:
 @pytest.mark.parametrize(
     "name", [*list(AXES)[:-1], pytest.param("worn place and pitch", marks=pytest.mark.slow)]
 )
-def test_a_table_is_named_where_no_law_does_the_same(name) -> None:
+def test_a_table_is_named_where_no_law_does_the_same(name, unchanged) -> None:
     """With a law, and then with fewer numbers, the law has the name; and either predicts."""
     run = positioning(name)
     held = run.repeat == 6
@@ -94,6 +95,7 @@ def test_a_table_is_named_where_no_law_does_the_same(name) -> None:
     assert all(r.u < 0.1 * r.value for r in sizes)
     for step in result.steps[1:]:
         check_sizes(name, {r.quantity: r for r in step.reported})
+    unchanged(answer_text(result))
 
 
 def check_sizes(name, expected) -> None:
@@ -140,7 +142,7 @@ def in_cycles(added, cycles: int = 5) -> Run:
 
 
 @pytest.mark.parametrize(("instant", "size"), [(3.0, 5.0), *slow((1.3, -3.0), (2.5, 1.5))])
-def test_a_slip_in_a_table_without_times_is_no_growth(instant, size) -> None:
+def test_a_slip_in_a_table_without_times_is_no_growth(instant, size, unchanged) -> None:
     """The reflector slips once; warming and a growth from cycle to cycle are its rivals."""
     noise = np.random.default_rng(4).normal(0.0, 0.3, 110)
     found = diagnose(in_cycles(lambda done: size * (done > instant - 1e-9) + noise))
@@ -158,6 +160,7 @@ def test_a_slip_in_a_table_without_times_is_no_growth(instant, size) -> None:
     ]
     probed = replace(touches, instrument=Instrument.TOUCH_PROBE)
     assert not any(acts_as_instrument(e, probed) for e in found.found)
+    unchanged(answer_text(found))
 
 
 def test_noise_that_wanders_is_no_slip() -> None:

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from made_up import ARM, arm_poses
 from marks import slow
+from unchanged import answer_text
 
 from matstd.diagnosis.answer import Verdict, diagnose
 from matstd.diagnosis.policy import POLICY
@@ -30,7 +31,7 @@ def run_of(sags: dict[str, list[float]], seed: int = 5) -> Run:
     return Run(touches, exact + rng.normal(0.0, NOISE, len(touches)), np.full(len(touches), NOISE))
 
 
-def test_joints_that_sag_are_found_and_none_beside_them() -> None:
+def test_joints_that_sag_are_found_and_none_beside_them(unchanged) -> None:
     weights = 0.3 * URAD  # 0.3 mrad a metre of every lever: a third of a millimetre in all
     result = diagnose(run_of({"B": [weights] * 4, "B1": [weights] * 3}))
     assert sorted(e.name for e in result.found) == ["joint-sag(B)", "joint-sag(B1)"]
@@ -38,6 +39,7 @@ def test_joints_that_sag_are_found_and_none_beside_them() -> None:
     for step in result.steps[1:]:
         size = next(r for r in step.reported if r.quantity == "peak_to_valley")
         assert size.u < 0.2 * size.value
+    unchanged(answer_text(result))
 
 
 def test_a_stiff_arm_has_no_joints_that_sag() -> None:
@@ -49,7 +51,7 @@ def test_a_stiff_arm_has_no_joints_that_sag() -> None:
     ("weight", "verdict"),
     [(0.0, Verdict.NONE), (0.034, Verdict.UNDECIDED), *slow((0.06, Verdict.MISSING))],
 )
-def test_a_sag_that_a_zero_may_be_is_undecided(weight, verdict) -> None:
+def test_a_sag_that_a_zero_may_be_is_undecided(weight, verdict, unchanged) -> None:
     """Chance does not make it, and yet its size is within what wrong zeros of the joints leave."""
     run = run_of({"B": [weight * URAD] * 4}, 3)
     found = diagnose(run, candidates=[parse_effect("joint-sag(B)", ARM)])
@@ -71,3 +73,4 @@ def test_a_sag_that_a_zero_may_be_is_undecided(weight, verdict) -> None:
     assert f", {why}" in named
     assert "further readings" in diagnosis_step(found, "run.csv")
     assert "does not decide whether the machine has an effect" in diagnosis_meaning(found)
+    unchanged(answer_text(found))

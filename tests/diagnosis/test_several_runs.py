@@ -10,7 +10,7 @@ from simulator_case import named
 from simulator_experiment import MACHINES
 from simulator_machine import read_machine
 from simulator_runs import read_runs, simulated_runs
-from unchanged import table_text
+from unchanged import answer_text, table_text
 
 import matstd
 from matstd.cli import main
@@ -206,7 +206,7 @@ def test_the_same_machine_keeps_what_was_known(spring) -> None:
 # rows outside the fit
 
 
-def test_a_run_held_out_is_predicted_with_its_setups_fitted() -> None:
+def test_a_run_held_out_is_predicted_with_its_setups_fitted(unchanged) -> None:
     runs = made(4, [{}, {}])
     runs["b"] = replace(runs["b"], split=np.full(len(runs["b"]), "test"))
     found = diagnose(joined(runs), candidates=[])
@@ -216,6 +216,7 @@ def test_a_run_held_out_is_predicted_with_its_setups_fitted() -> None:
     assert NOISE * 0.9 < last.left_out < 2.0 * NOISE
     assert not found.fit.used[found.run.touches.run == 1].any()
     assert not found.trend.changed
+    unchanged(answer_text(found))
 
 
 def test_a_setup_of_one_pose_is_never_left_out_whole(knocked) -> None:

@@ -5,6 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from unchanged import answer_text
 
 from matstd.diagnosis.accuracy import (
     Repeatability,
@@ -160,7 +161,7 @@ def test_a_promise_elsewhere_is_at_least_the_one_here(hidden):
     assert {"X_mm", "time_s", "setup"} <= {d.name for d in found.domains}
 
 
-def test_lines_of_the_parts_are_read_in_their_order(hidden):
+def test_lines_of_the_parts_are_read_in_their_order(hidden, unchanged):
     chain = hidden.touches.chain
     found = diagnose(hidden, candidates=[parse_effect("backlash(X)", chain)])
     lines = part_lines(found)
@@ -175,6 +176,7 @@ def test_lines_of_the_parts_are_read_in_their_order(hidden):
         f"{found.promise.elsewhere / UM:.2f} µm at other places" in dict(lines)["error to expect"]
     )
     assert "backlash(X)" in dict(lines)["named effects"]
+    unchanged(answer_text(found))
 
 
 def test_odds_in_words():
@@ -197,7 +199,7 @@ def test_a_rival_that_explains_the_run_better_is_distinguished(odds, words):
     assert _odds(odds) == words
 
 
-def test_a_law_of_a_sensor_is_weighed_against_an_unrecorded_drift(hidden):
+def test_a_law_of_a_sensor_is_weighed_against_an_unrecorded_drift(hidden, unchanged):
     """A backlash follows no sensor; a growth with a temperature does."""
     run = hidden[::3]
     t = run.touches
@@ -212,6 +214,7 @@ def test_a_law_of_a_sensor_is_weighed_against_an_unrecorded_drift(hidden):
     assert named.against_drift is not None
     assert found.parts.headline == (named,)
     assert "without a recorded cause, odds" in dict(part_lines(found))["named effects"]
+    unchanged(answer_text(found))
 
 
 def test_an_expansion_beyond_all_materials_is_not_found(hidden, monkeypatch):
