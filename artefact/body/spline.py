@@ -137,7 +137,7 @@ class Jet:
         root = np.sqrt(np.maximum(mean**2 - gauss, 0.0))
         return np.column_stack([mean + root, mean - root])
 
-    def plus(self, other: "Jet", factor: float = 1.0) -> "Jet":
+    def plus(self, other: "Jet", factor: float) -> "Jet":
         """The jet of the sum of two height fields, the second times a factor."""
         return Jet(
             h=self.h + factor * other.h,

@@ -73,7 +73,7 @@ class CalibrationFit:
 
 
 def fit_calibration(
-    nominal: Standard, cmm: CmmPoints, u_point: float, u_feature: float, waviness: float = 0.0
+    nominal: Standard, cmm: CmmPoints, u_point: float, u_feature: float, waviness: float
 ) -> CalibrationFit:
     """Fit the standard to the points of a CMM.
 

@@ -42,7 +42,7 @@ Limits = Mapping[str, float]
 
 
 def dmis_program(
-    standard: Standard, sides: Sides, engraved: Array, limits: Limits, orientation: float = 0.0
+    standard: Standard, sides: Sides, engraved: Array, limits: Limits, orientation: float
 ) -> str:
     """Text of the program.
 

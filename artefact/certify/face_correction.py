@@ -38,7 +38,7 @@ class CorrectedFace:
 
 
 def corrected_face(
-    patch: FreeformPatch, points: Array, u_point: float, waviness: float = 0.0
+    patch: FreeformPatch, points: Array, u_point: float, waviness: float
 ) -> CorrectedFace:
     """Fit a smooth correction to the deviations of points; dense lines judge it.
 

@@ -39,7 +39,7 @@ class Allowed:
     drawing: Mapping[str, float]
     u_feature: float  # standard uncertainty that the points of a feature share, mm
     u_temperature: float  # standard uncertainty of the temperature of the piece about 20 degC, K
-    u_scale: float = 0.0  # relative standard uncertainty of the scales of the CMM
+    u_scale: float  # relative standard uncertainty of the scales of the CMM
 
     def u_size(self, expansion: float) -> float:
         """Relative standard uncertainty of all lengths, which every feature shares."""

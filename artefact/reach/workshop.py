@@ -33,8 +33,8 @@ class DatumBall:
     z: float  # of its centre above the origin of the frame, mm
     radius: float  # as calibrated, mm
     stem: float  # radius of its stem, mm
-    low: float = 0.0  # height of the table's face, where the stem begins, mm
-    u: float = 0.0  # standard uncertainty of the radius, mm
+    low: float  # height of the table's face, where the stem begins, mm
+    u: float  # standard uncertainty of the radius, mm
 
     def sphere(self, T_table_artefact: Array) -> DatumSphere:
         """The ball as a feature of a standard; raises DesignError for one that is not upright."""
@@ -187,8 +187,8 @@ def clearance_in_workshop(
     probe: ProbeShape,
     workshop: Workshop,
     T_still_table: Mapping[str, Array],
-    enough: float = 2.0,
-    is_near_lid: bool = False,
+    enough: float,
+    is_near_lid: bool,
 ) -> Clearance:
     """How near the probe comes to the standard and to everything round it; from below.
 

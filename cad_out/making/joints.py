@@ -35,7 +35,7 @@ an edge makes a face that is not valid when it is read again."""
 _WALL = 3.0  # mm between a hole and the next, and between a thread and a face
 _PLATE_LEFT = 8.0  # mm of plate over the head of a screw that is let into its underside
 _SHARES = (0.7, 0.6, 0.5, 0.4)  # of the half sides of a block, where its screws may be
-_TURNS = 24
+_TURNS = 8
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,7 +103,7 @@ def _block(patch: FreeformPatch, standard: Standard, details: Details) -> Block:
         if np.sqrt(3.0) * share * min(patch.half_size) < 2.0 * pad + 1.0:
             continue  # pads that meet are one
         for turn in range(_TURNS):
-            angle = 2.0 * np.pi * (turn / _TURNS + np.arange(3)[:, None] / 3.0)
+            angle = 2.0 * np.pi / 3.0 * (turn / _TURNS + np.arange(3)[:, None])
             local = share * min(patch.half_size) * np.hstack([np.cos(angle), np.sin(angle)])
             if (np.abs(local) + pad > np.array(patch.half_size) - _EDGE).any():
                 continue

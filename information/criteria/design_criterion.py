@@ -141,7 +141,7 @@ def five_criteria(G: Array, W: Array, prior_sd: Array) -> dict[str, DesignCriter
     }
 
 
-def robust(criterion: DesignCriterion, scale: Array, tail: float = 1.0) -> DesignCriterion:
+def robust(criterion: DesignCriterion, scale: Array, tail: float) -> DesignCriterion:
     """The same criterion for machines whose errors are larger or smaller than expected.
 
     Args:

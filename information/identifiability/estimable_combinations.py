@@ -51,7 +51,8 @@ def combinations(
         weights = np.zeros(W.shape[1])
         weights[kept] = v / prior_sd[kept]
         importance = weights * prior_sd
-        lead = int(np.argmax(np.abs(importance)))
+        size = np.abs(importance)
+        lead = int(np.argmax(size > (1.0 - 1e-9) * size.max()))  # the first of equal ones
         scale = weights[lead]
         u = float(1.0 / (np.sqrt(1.0 + x * x) * abs(scale)))
         out.append(

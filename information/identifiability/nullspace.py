@@ -160,7 +160,7 @@ def _fewest(N: Array, have: list[Array], order: list[int]) -> list[Array]:
     chosen = _independent([*have, *pairs], [], g)
     if len(chosen) < g:
         found = [z for lead in range(p) if (z := _smallest(rest, lead)) is not None]
-        found.sort(key=lambda z: (np.count_nonzero(z), float(np.abs(z).sum())))
+        found.sort(key=lambda z: (np.count_nonzero(z), round(float(np.abs(z).sum()), 9)))
         chosen = _independent([*found, *N], chosen, g)
     return chosen[len(have) :]
 

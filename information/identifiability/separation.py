@@ -90,7 +90,8 @@ def identifiability(
         size = np.abs(z).max()
         # W is per prior standard deviation, a freedom is stated in base units
         base = -z * prior_sd / prior_sd[lead]
-        others = [k for k in np.argsort(-np.abs(z), kind="stable").tolist() if k != lead and z[k]]
+        by_size = np.argsort(-np.abs(z).round(9), kind="stable")  # equal ones not by their rounding
+        others = [k for k in by_size.tolist() if k != lead and z[k]]
         why = reason([lead, *others], parameters, chain) if chain is not None else None
         resolution, by = _resolved_by(z / size, more, why)
         freedom = Freedom(

@@ -30,7 +30,7 @@ from matstd.twin.frames import Array, IntArray
 
 
 def low_rank(
-    diagonal: Array, column: Callable[[int], Array], left_out: float = 1e-3
+    diagonal: Array, column: Callable[[int], Array], left_out: float
 ) -> tuple[Array, IntArray]:
     """``F`` with ``F F^T = K`` but for a share of the trace: Cholesky with pivots.
 
@@ -115,7 +115,7 @@ class FieldTest:
         return float(exceedance(size, np.zeros((1, len(size))), self.threshold)[0])
 
 
-def field_test(B: Array, F: Array, risk: float = 0.05) -> FieldTest:
+def field_test(B: Array, F: Array, risk: float) -> FieldTest:
     """The test for a field with the covariance ``F F^T`` beside what is explained.
 
     Args:

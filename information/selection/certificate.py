@@ -21,7 +21,7 @@ class Certificate:
     count: int  # touches that were
     value: float  # criterion of the choice
     bound: float  # no other choice of as many of the candidates has a smaller one
-    shares: bool = False  # whether other choices have to keep the same shares of poses and features
+    shares: bool  # whether other choices have to keep the same shares of poses and features
 
     @property
     def efficiency(self) -> float:

@@ -49,11 +49,11 @@ class ProbeStep:
     pose: int  # number of the table pose in the log
     feature: int  # number of the feature in the log
     # feed of the second touch that measures, mm/s; 0 where the first one does
-    slow_feed: float = 0.0
-    step_back: float = 0.0  # from the surface before the second touch, mm
+    slow_feed: float
+    step_back: float  # from the surface before the second touch, mm
+    is_air: bool  # it must meet nothing; it has no number, and no line in the log
     # what the program does when there is no contact; of one in the air, when there is
     on_miss: list["Step"] = field(default_factory=list)
-    is_air: bool = False  # it must meet nothing; it has no number, and no line in the log
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,10 +87,10 @@ class ReadProgram:
     heading: Heading  # standard, set-up and probe that it was made for
     features: Mapping[int, str]  # name of every feature number
     steps: tuple[Step, ...]
-    is_search: bool = False  # its touches come down from above on whatever is there
-    is_first: bool = False  # it is one that a control is tried with, and measures nothing
-    tool: int | None = None  # number of the tool that it calls
-    preset: int | None = None  # number of the preset that it selects
+    is_search: bool  # its touches come down from above on whatever is there
+    is_first: bool  # it is one that a control is tried with, and measures nothing
+    tool: int | None  # number of the tool that it calls
+    preset: int | None  # number of the preset that it selects
 
     @property
     def touches(self) -> list[ProbeStep]:

@@ -128,8 +128,8 @@ def companions(
     plan: TouchPlan,
     dialect: Dialect,
     feeds: Feeds,
-    raised: float = RAISED,
-    is_further: bool = False,
+    raised: float,
+    is_further: bool,
 ) -> Companions:
     """Dry run, search within the widest of `SPREADS` that allows one, ball, commissioning program.
 

@@ -38,9 +38,9 @@ class PlannedVisit:
 class VisitSchedule:
     """What the operator does besides the programs."""
 
-    warm_up: float = 0.0  # how long the machine has moved before the first touch, s
-    pause: float = 0.0  # how long it stands still, s
-    slowness: float = 1.0  # time from touch to touch over that of the programs
+    warm_up: float  # how long the machine has moved before the first touch, s
+    pause: float  # how long it stands still, s
+    slowness: float  # time from touch to touch over that of the programs
 
 
 def read_visit(

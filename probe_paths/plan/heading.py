@@ -48,8 +48,8 @@ class Sensor(NamedTuple):
 
     name: str  # name of the sensor; its column in a run is `T_<name>_degC`
     parameter: int  # Q parameter in which the control's PLC hands it to programs
-    factor: float = 1.0  # degC per unit of the parameter
-    offset: float = 0.0  # degC at zero
+    factor: float  # degC per unit of the parameter
+    offset: float  # degC at zero
 
     @property
     def line(self) -> str:

@@ -173,7 +173,7 @@ def combination_words(
     names: Sequence[str], units: Sequence[str], weights: Array, importance: Array
 ) -> str:
     """`EXX + 0.52 EXZ - 0.03 µm/µrad EBX ...`: the most important parameters with their weights."""
-    order = np.argsort(-np.abs(importance), kind="stable")
+    order = np.argsort(-np.abs(importance).round(9), kind="stable")
     kept = [k for k in order if abs(importance[k]) >= MIN_WEIGHT_SHARE * abs(importance[order[0]])]
     label, factor = shown(units[order[0]])
     parts = []

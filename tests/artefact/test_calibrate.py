@@ -83,7 +83,7 @@ def written(path: Path, rows, stamp: str = "", unit: str = "mm", scale: float = 
 def found(nominal, tmp_path_factory):
     path = tmp_path_factory.mktemp("cmm") / "cmm.csv"
     written(path, cmm_rows(nominal, np.random.default_rng(1)), nominal.fingerprint)
-    return fit_calibration(nominal, read_cmm_points(path, nominal), NOISE, 0.2 * UM)
+    return fit_calibration(nominal, read_cmm_points(path, nominal), NOISE, 0.2 * UM, 0.0)
 
 
 def aligned_truth(nominal) -> np.ndarray:
@@ -184,7 +184,7 @@ def measured(true, nominal, rng):
         line=np.arange(len(rows)),
         remarks=(),
     )
-    return fit_calibration(nominal, cmm, NOISE, 0.2 * UM).standard
+    return fit_calibration(nominal, cmm, NOISE, 0.2 * UM, 0.0).standard
 
 
 def test_the_planted_errors_are_no_longer_seen(golden, nominal) -> None:
@@ -247,7 +247,7 @@ def test_points_that_do_not_do(nominal, tmp_path, spoil, expected) -> None:
     rows = spoil(cmm_rows(nominal, np.random.default_rng(3), per_face=22))
     path = written(tmp_path / "cmm.csv", rows, nominal.fingerprint)
     with pytest.raises((BadFile, NotEnoughData), match=expected):
-        fit_calibration(nominal, read_cmm_points(path, nominal), NOISE, NOISE)
+        fit_calibration(nominal, read_cmm_points(path, nominal), NOISE, NOISE, 0.0)
 
 
 def test_balls_that_the_cmm_has_evaluated_state_their_diameter(nominal, tmp_path) -> None:
@@ -417,7 +417,7 @@ def test_dust_is_left_out_and_reported(nominal, tmp_path) -> None:
         for k in (at[3], at[-1]):
             rows[k] = (rows[k][0], *(np.add(rows[k][1:], [0.0, 0.0, chip])))
         path = written(tmp_path / "cmm.csv", rows, nominal.fingerprint)
-        made.append(fit_calibration(nominal, read_cmm_points(path, nominal), NOISE, NOISE))
+        made.append(fit_calibration(nominal, read_cmm_points(path, nominal), NOISE, NOISE, 0.0))
     clean, dusty = made
     assert clean.remarks == ()
     assert [r.split(":")[0] for r in dusty.remarks] == ["SPH2", "FF1"]

@@ -100,12 +100,12 @@ def test_certified_efficiency_of_a_good_and_of_a_bad_choice(is_determinant):
     fill(selection, 40)
     exchange(selection)
     best = relaxed(criterion, W, 40, selection.chosen)
-    good = Certificate(2000, 40, value_of(criterion, W, selection.chosen), best.bound)
+    good = Certificate(2000, 40, value_of(criterion, W, selection.chosen), best.bound, False)
     assert 0.97 < good.efficiency <= 1.0
     other = np.arange(2000) < 40
     again = relaxed(criterion, W, 40, other)
     assert again.bound == pytest.approx(best.bound, rel=5e-3)  # the same bound from another start
-    assert Certificate(2000, 40, value_of(criterion, W, other), again.bound).efficiency < 0.6
+    assert Certificate(2000, 40, value_of(criterion, W, other), again.bound, False).efficiency < 0.6
     whole = rounded(criterion, W, best.weight, 40)
     assert int(whole.chosen.sum()) == 40
     assert best.bound / whole.value > 0.97

@@ -165,7 +165,7 @@ def test_drawn_machines_keep_to_the_directions_that_matter():
     felt, sd = rng.normal(size=(4, 9)), np.ones(9)
     W, G = rng.normal(size=(30, 4)) @ felt, rng.normal(size=(5, 3, 4)) @ felt
     scale = rng.uniform(0.5, 2.0, (3, 9))
-    criterion = robust(mean_prediction(G, W, sd), scale)
+    criterion = robust(mean_prediction(G, W, sd), scale, 1.0)
     assert criterion.size == 4
     whole = [
         np.mean([np.trace(g @ np.linalg.inv(np.diag(s**-2.0) + W.T @ W) @ g.T) for g in G])
@@ -218,7 +218,7 @@ def test_tail_and_scales_that_mean_nothing_are_refused():
     with pytest.raises(DesignError, match="tail"):
         DesignCriterion(np.eye(2), Determinant(2), tail=0.0)
     with pytest.raises(DesignError, match="expected above zero"):
-        robust(mean_variance(np.eye(2)), np.array([[1.0, 0.0]]))
+        robust(mean_variance(np.eye(2)), np.array([[1.0, 0.0]]), 1.0)
 
 
 def test_the_five_are_their_definitions_over_the_same_directions():

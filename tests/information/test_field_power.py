@@ -17,7 +17,7 @@ def case():
     F, _ = low_rank(np.diag(K), lambda i: K[i], 1e-9)
     V0 = np.eye(N) + B @ B.T
     ratio = np.linalg.inv(V0) - np.linalg.inv(V0 + K)  # twice the log of the likelihood ratio
-    return x, B, K, V0, ratio, field_test(B, F)
+    return x, B, K, V0, ratio, field_test(B, F, 0.05)
 
 
 def rate(case, field):
@@ -67,7 +67,7 @@ def test_more_points_than_the_field_needs_waste_nothing(case):
     bump = 1.3 * np.exp(-0.5 * (x - 40.0) ** 2 / 9.0**2)
     F, _ = low_rank(np.diag(K), lambda i: K[i], 1e-9)
     many = [np.repeat(a, 10, axis=0) / np.sqrt(10.0) for a in (B, F, bump[:, None])]
-    assert field_test(*many[:2]).power(many[2])[0] == pytest.approx(
+    assert field_test(*many[:2], 0.05).power(many[2])[0] == pytest.approx(
         test.power(bump[:, None])[0], abs=1e-3
     )
 

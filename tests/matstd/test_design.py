@@ -13,6 +13,7 @@ import pytest
 import rs274
 from browser import faults, opened, requests
 from figures import render_alone
+from unchanged import Unchanged, folded, page_text
 
 from matstd.artefact.body import Limits, read_standard
 from matstd.artefact.brief import Brief, PlacementOptions, project_file, read_project
@@ -72,7 +73,13 @@ def with_few_sites(**fields: object) -> Brief:
 
 
 @pytest.fixture(scope="module")
-def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def figures() -> dict[str, str]:
+    """What the figures of the design consist of."""
+    return {}
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory, figures: dict[str, str]) -> Path:
     """The whole command with fewer candidates, one rival of spheres, one of another shape, no maps
     but the path.
 
@@ -87,13 +94,61 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
         bodies = comparison.rivals
         patch.setattr(comparison, "rivals", lambda *of: dict([*bodies(*of).items()][:1]))
         patch.setattr("matstd.cad_out.verify.export.mesh_chord", lambda _: 0.05)
-        render_alone(patch)  # `report/test_*` render them; the drawing is no PNG
+        # `report/test_*` render them; the drawing is no PNG
+        recorded = render_alone(patch)
         patch.setattr(study_run, "draw_maps", lambda *_: [])
         patch.setattr(design_page, "draw_study_volumes", lambda *_: [])
         patch.setattr(design_page, "touch_curve", partial(touch_curve, counts=(50, 150)))
         project = small_project(folder, touches=100, poses=8)
         assert main(["design", str(project), "-o", str(out)]) == 0
+    figures |= recorded
     return out
+
+
+@pytest.mark.parametrize(
+    "names",
+    [
+        "*.toml",
+        "*.json",
+        "*.csv",
+        "sensitivity/*.csv",
+        "sensitivity/montecarlo.json",
+        "programs/*",
+        "setup/MS*",
+        "setup/*.html",
+        "report.html",
+        "cmm.dmi",
+        "drawing.svg",
+    ],
+)
+def test_a_design_is_what_it_was(made: Path, unchanged: Unchanged, names: str) -> None:
+    """All that is written as text, lines of the same words in one."""
+    unchanged("\n\n".join(f"{p.name}\n{folded(lines_of(p))}" for p in sorted(made.glob(names))))
+
+
+def lines_of(path: Path) -> str:
+    """A file as lines that can be compared: without the shares of effects that rounding decides,
+    every vertex of a drawing with its style."""
+    versions = r"(?<=material-standard )\d[^<\n]*?(?=<| -->|$)"
+    text = re.sub(versions, "", path.read_text(encoding="utf-8"))
+    match path.suffix:
+        case ".json":  # a freedom of many members has other ones that are as short
+            return re.sub(r'\n *"[^"\n]*( [+-] [^"\n]*){5,}",?', "", text)
+        case ".html":
+            return re.sub(r"\d+ of 72\b", "some of 72", page_text(text))
+        case ".dmi":
+            return re.sub(r"_\d+\)", ")", text)
+        case ".svg":
+            paths = re.findall(r'<path d="([^"]*)".*?style="([^"]*)"', text, flags=re.DOTALL)
+            lines = [f"{style} {line}" for shape, style in paths for line in shape.splitlines()]
+            return "\n".join([*re.findall("<!-- .* -->|<g transform=.*", text), *lines])
+    return text
+
+
+def test_its_figures_are_what_they_were(
+    made: Path, figures: dict[str, str], unchanged: Unchanged
+) -> None:
+    unchanged("\n".join(f"{name}: {figures[name]}" for name in sorted(figures)))
 
 
 def test_every_file_is_there(made: Path) -> None:

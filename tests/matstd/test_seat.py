@@ -357,7 +357,7 @@ def test_two_set_ups_are_two_places():
 
 
 def test_the_ball_of_the_workshop_stands_on_the_table():
-    near, far = (DatumBall(x=x, y=0.0, z=80.0, radius=12.5, stem=6.0) for x in (200.0, 1000.0))
+    near, far = (DatumBall(x, 0.0, 80.0, 12.5, 6.0, 0.0, 0.0) for x in (200.0, 1000.0))
     assert refusal(example(ball=near)) == ""
     assert "its stem stands 840 mm beside the face" in refusal(example(ball=far))
 

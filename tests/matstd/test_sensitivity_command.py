@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from unchanged import folded
 
 from matstd.sensitivity import montecarlo
 
@@ -27,7 +28,9 @@ def add(project, text):
     project.write_text(project.read_text(encoding="utf-8") + text, encoding="utf-8")
 
 
-def test_a_study_stands_in_a_folder_with_its_precision(project, tmp_path, answer, monkeypatch):
+def test_a_study_stands_in_a_folder_with_its_precision(
+    project, tmp_path, answer, monkeypatch, unchanged
+):
     """Without its maps, which `tests/sensitivity/test_study.py` and `tests/report` draw."""
     monkeypatch.setattr("matstd.stages.study_run.draw_maps", lambda *_: [])
     monkeypatch.setattr("matstd.report.pages.study_page.draw_study_volumes", lambda *_: [])
@@ -50,6 +53,9 @@ def test_a_study_stands_in_a_folder_with_its_precision(project, tmp_path, answer
     assert np.ptp([float(r["B_deg"]) for r in rows]) == pytest.approx(110.0, abs=0.1)
     for name in ("trajectory.png", "trajectory_X.png", "trajectory_C.png"):
         assert (out / name).stat().st_size > 4_000
+    paths = sorted(p for p in out.rglob("*") if p.suffix in (".csv", ".json"))
+    lines = [f"{p.name}\n{folded(p.read_text(encoding='utf-8'))}" for p in paths]
+    unchanged("\n".join([folded(said), *lines]).replace(str(tmp_path), ""))
 
 
 @pytest.mark.parametrize(

@@ -51,6 +51,9 @@ def test_a_touch_counts_until_its_contact_and_its_retract_with_the_next_move(cha
         number=1,
         pose=1,
         feature=1,
+        slow_feed=0.0,
+        step_back=0.0,
+        is_air=False,
     )
     steps = [Move(0, here, None), touch, Move(2, steps_of(chain, X=300.0), None)]
     found = step_times(chain, steps, CLOCK, np.array([6.0]))

@@ -20,7 +20,7 @@ from matstd.twin.errors import BadFile
 from matstd.twin.files import read_run, write_run
 
 ROOT = Path(__file__).parents[2]
-SENSORS = (Sensor("spindle", 100), Sensor("bed", 103, 0.1, -5.0))
+SENSORS = (Sensor("spindle", 100, 1.0, 0.0), Sensor("bed", 103, 0.1, -5.0))
 WORDS = replace(Dialect(), sensors=SENSORS)
 
 

@@ -30,7 +30,7 @@ def sheet(golden, tmp_path_factory):
     folder = tmp_path_factory.mktemp("sheet") / "setup"
     programs = golden.programs()
     plan = golden.plan()
-    others = companions(plan, Dialect(), Feeds(), 80.0)
+    others = companions(plan, Dialect(), Feeds(), 80.0, False)
     others.write(folder)
     page = write_setup_page(folder, [Station(plan, Dialect(), programs)], 0, others)
     assert page == folder / PAGE
@@ -44,7 +44,7 @@ def test_touches_left_out_for_one_reason_stand_in_one_line(golden, tmp_path):
     plan = golden.plan()
     here = Refusal(-1, "SPH1", {"B": -0.5 * np.pi}, "no room above")
     left_out = replace(plan, refused=(here, here, replace(here, feature="FF2"), here))
-    others = companions(plan, Dialect(), Feeds(), 80.0)
+    others = companions(plan, Dialect(), Feeds(), 80.0, False)
     station = Station(left_out, Dialect(), golden.programs())
     page = write_setup_page(tmp_path / "setup", [station], 0, others).read_text(encoding="utf-8")
     assert page.count("SPH1, B-90.0: no room above") == 1
@@ -64,7 +64,7 @@ def test_every_alarm_of_the_programs_is_explained(sheet):
 
 def test_linuxcnc_has_a_sheet_with_its_own_alarms(golden, tmp_path):
     dialect, plan = read_dialect("linuxcnc"), golden.plan()
-    others = companions(plan, dialect, Feeds(), 80.0)
+    others = companions(plan, dialect, Feeds(), 80.0, False)
     programs = golden.programs("linuxcnc")
     page = write_setup_page(tmp_path, [Station(plan, dialect, programs)], 0, others)
     (table,) = [t for t in shown_tables(page.read_text(encoding="utf-8")) if t.section == "Alarms"]
@@ -142,7 +142,7 @@ def test_a_machine_of_three_axes_has_no_word_of_turns(golden, tmp_path):
     small = golden.standard()
     wanted = requests_at(small, "FF1", np.array([[0.0, 3.0], [5.0, -4.0]]), np.zeros(0))
     plan = plan_touches(small, chain, Probe(), Setup("a"), wanted, PlanOptions())
-    programs, others = make_programs(plan), companions(plan, Dialect(), Feeds(), 80.0)
+    programs, others = make_programs(plan), companions(plan, Dialect(), Feeds(), 80.0, False)
     page = write_setup_page(tmp_path, [Station(plan, Dialect(), programs)], 0, others)
     visible = re.sub(r"(?s)<(script|style).*?</\1>", "", page.read_text(encoding="utf-8"))
     said = [visible, *(p.text for p in (*programs.programs, *others.dry_run.programs))]

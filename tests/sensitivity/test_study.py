@@ -5,7 +5,9 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from figures import render_alone
 from machines import LATHE, none_but
+from unchanged import folded, summary
 
 from matstd.report.maps import draw_maps, study_maps
 from matstd.report.style import nothing as nothing_to_draw
@@ -23,10 +25,33 @@ def study(chain, workspace):
 
 
 @pytest.fixture(scope="module")
-def written(study, tmp_path_factory):
+def figures():
+    """What its maps consist of."""
+    return {}
+
+
+@pytest.fixture(scope="module")
+def written(study, figures, tmp_path_factory):
     folder = tmp_path_factory.mktemp("study")
     write_study(study, folder, sampling_words(study.volumetric))
-    return folder, draw_maps(study, folder, np.random.default_rng(6))
+    with pytest.MonkeyPatch.context() as patch:
+        recorded = render_alone(patch, "")
+        maps = draw_maps(study, folder, np.random.default_rng(6))
+    figures |= recorded
+    return folder, maps
+
+
+def test_its_files_are_what_they_were(written, unchanged):
+    folder, maps = written
+    paths = sorted([*folder.glob("*.csv"), *folder.glob("*.json")])
+    lines = [f"{p.name}\n{folded(p.read_text(encoding='utf-8'))}" for p in paths]
+    with np.load(folder / "sections.npz") as arrays:
+        lines += [f"{name} {summary(arrays[name])}" for name in sorted(arrays)]
+    unchanged("\n".join([*lines, *map(str, maps)]))
+
+
+def test_its_maps_are_what_they_were(written, figures, unchanged):
+    unchanged("\n".join(f"{name}: {figures[name]}" for name in sorted(figures)))
 
 
 def test_the_same_seed_gives_the_same_study(chain, workspace, study):

@@ -1,0 +1,61 @@
+"""The files of a built standard are what they were when they were looked at."""
+
+import json
+import re
+import zipfile
+from pathlib import Path
+
+import pytest
+from unchanged import Unchanged, folded, summary
+
+from matstd.cad_out.verify.conformity import write_conformity
+
+
+def entities(text: str) -> str:
+    """Entities of a STEP file without their numbers, a line each, lengths to 0.1 µm."""
+    text = re.sub(r"\n *", "", text).replace(";", "\n")
+    text = re.sub(r"(?<!')#\d+,?|(?<=material-standard) [\d.]+", "", text)
+    return re.sub(
+        r"(?<=[(,])-?\d+\.\d*(?:E-?\d+)?", lambda m: f"{round(float(m[0]), 4) + 0.0:.4f}", text
+    )
+
+
+def archived(path: Path) -> str:
+    """Texts of an archive, a tag a line."""
+    with zipfile.ZipFile(path) as archive:
+        texts = [f"{name}\n{archive.read(name).decode()}" for name in archive.namelist()]
+    return "\n".join(texts).replace("><", ">\n<")
+
+
+def chunk(path: Path) -> str:
+    """What a GLB file says of its buffers."""
+    data = path.read_bytes()
+    return json.dumps(json.loads(data[20 : 20 + int.from_bytes(data[12:16], "little")]), indent=1)
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["standard.step", "standard-faces.step", "standard-parts.step", "standard.3mf", "standard.glb"],
+)
+def test_a_file_is_what_it_was(built, unchanged: Unchanged, name: str) -> None:
+    """Lines of the same words in one."""
+    path = built[0] / name
+    match path.suffix:
+        case ".3mf":
+            text = archived(path)
+        case ".glb":
+            text = chunk(path)
+        case _:
+            text = entities(path.read_text(encoding="utf-8"))
+    unchanged(folded(text))
+
+
+def test_figures_and_triangles_are_what_they_were(built, tmp_path, unchanged: Unchanged) -> None:
+    """The conformity; of every face its triangles, their corners and their area."""
+    place, conformity, mesh = built
+    write_conformity(tmp_path / "conformity.json", conformity)
+    lines = [folded((tmp_path / "conformity.json").read_text(encoding="utf-8"))]
+    for name in sorted(set(mesh.owner)):
+        corners = mesh.corners[mesh.triangles[mesh.owner == name]]
+        lines.append(f"'{name}' {summary(corners[..., 0])} {summary(corners[..., 1:])}")
+    unchanged("\n".join(lines))
