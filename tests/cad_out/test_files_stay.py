@@ -52,7 +52,7 @@ def test_a_file_is_what_it_was(built, unchanged: Unchanged, name: str) -> None:
 
 def test_figures_and_triangles_are_what_they_were(built, tmp_path, unchanged: Unchanged) -> None:
     """The conformity; of every face its triangles, their corners and their area."""
-    place, conformity, mesh = built
+    _, conformity, mesh = built
     write_conformity(tmp_path / "conformity.json", conformity)
     lines = [folded((tmp_path / "conformity.json").read_text(encoding="utf-8"))]
     for name in sorted(set(mesh.owner)):

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from programs import as_read, left_log, ran
+from unchanged import facts, folded
 
 from matstd.artefact.body import write_standard
 from matstd.artefact.tool import home_readings
@@ -66,6 +67,17 @@ def test_a_ball_that_moved_and_a_radius_that_grew_are_separated(logged, part, sm
     assert change.hours == pytest.approx(2.0)
     assert change.touches == 8
     assert change.scatter < 10.0 * NM
+
+
+def test_the_program_and_a_change_are_what_they_were(
+    ball, program, logged, part, small, chain, unchanged
+):
+    later = logged(2.0, setup_error=pose(np.eye(3), np.full(3, 4.0 * UM)), radius_error=2.0 * UM)
+    (after,) = read_log("MS_A_CAL.TXT", chain.rotary_axes, later)
+    parts = facts(ball_changes([after, part], small, chain, 1.0 * UM))
+    unchanged(
+        "\n".join([make_ball(ball).programs[0].text, folded(facts(program.steps)), later, parts])
+    )
 
 
 def test_uncertainties_cover_what_noise_does(part, small, chain):

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from programs import all_read, as_read, ran
+from unchanged import facts, folded
 
 from matstd.api.replanning import feeds_of
 from matstd.artefact.body import Base, contact
@@ -96,6 +97,13 @@ def test_the_place_is_found_within_its_uncertainty(log, small, chain, golden):
         found.setup.T_table_artefact,
         golden.setup().T_table_artefact @ pose(fixed_xyz(found.angles), found.shift),
     )
+
+
+def test_search_and_place_are_what_they_were(search, program, log, small, chain, golden, unchanged):
+    (part,) = read_log(log, chain.rotary_axes)
+    rng = np.random.default_rng(0)
+    found = find_standard(small, golden.setup(), ball_centres(part, chain), 3.0, rng, SPREAD)
+    unchanged("\n".join([search.programs[0].text, folded(facts(program.steps)), facts(found)]))
 
 
 def test_few_touches_are_refused(log, small, chain, golden):

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from programs import parts_of, ran
+from unchanged import facts
 
 from matstd.artefact.body import Known
 from matstd.probe_paths.campaign import VirtualMachine, evaluate
@@ -67,6 +68,11 @@ def test_logs_hold_what_the_machine_did(runs, parts, read, chain):
         assert np.abs(b - run.q[:, chain.axis_index("B")]).max() < 1e-9
         clock = (part.begin - FIRST_MORNING).total_seconds() + part.time
         assert np.all(np.floor(run.time) == clock)
+
+
+def test_runs_logs_and_evaluation_are_what_they_were(runs, parts, small, chain, unchanged):
+    made = [(r.q, r.time, r.feature, r.meeting, r.reached, r.outcome, r.end) for r in runs]
+    unchanged("\n".join([facts(made), facts(parts), facts(evaluate(parts, small, chain, U))]))
 
 
 def test_z_is_that_of_the_gauge_point_and_x_y_those_of_the_ball(parts, runs, chain):

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from unchanged import facts
 
 from matstd.artefact.reach import Requests
 from matstd.artefact.tool import Probe
@@ -22,6 +23,10 @@ END_OF_A_FILE = 10.0
 @pytest.fixture(scope="module")
 def found(plan):
     return orders(plan, ordinary_model(plan.chain), 1.0 * UM)
+
+
+def test_the_orders_are_what_they_were(found, unchanged):
+    unchanged(facts(found))
 
 
 def test_quicker_orders_know_less_of_drift(found, plan):

@@ -6,6 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from unchanged import facts
 
 from matstd.artefact.body import DatumSphere
 from matstd.artefact.body.datum import STEM_CLEARANCE
@@ -45,6 +46,10 @@ def test_every_request_is_touched_once_or_refused(plan, golden):
     refused = [r.request for r in plan.refused]
     assert sorted([*made, *refused]) == list(range(len(golden.requests(golden.standard()))))
     assert len(refused) == 2
+
+
+def test_the_plan_is_what_it_was(plan, unchanged):
+    unchanged(facts(plan))
 
 
 def test_an_anchor_sphere_is_touched_first_on_every_visit_at_the_same_point(plan):

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from unchanged import folded
 
 from matstd.api.replanning import planned_visit
 from matstd.twin.errors import BadFile
@@ -28,7 +29,9 @@ def visit(plan, chain, tmp_path):
     return path
 
 
-def test_the_programs_of_a_visit_keep_its_order_sides_and_standstill(design, visit, plan) -> None:
+def test_the_programs_of_a_visit_keep_its_order_sides_and_standstill(
+    design, visit, plan, unchanged
+) -> None:
     made = planned_visit(visit, design)
     (station,) = made.stations
     found = station.plan
@@ -42,6 +45,7 @@ def test_the_programs_of_a_visit_keep_its_order_sides_and_standstill(design, vis
     assert made.lines[0].startswith("The twin made all 16 touches")
     assert f"before {second.name}" in " ".join(made.lines)
     assert "feed override 50 %" in " ".join(made.lines)
+    unchanged("\n".join([folded(first.text), folded(second.text), *made.lines]))
 
 
 @pytest.mark.parametrize(

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from unchanged import facts
 
 from matstd.api.evaluating import evaluate_scan_log
 from matstd.artefact.body import Standard
@@ -91,6 +92,12 @@ def test_rows_have_the_deviations_and_their_uncertainty(body, scan, tmp_path):
     assert abs(t.T_table_artefact[0][:3, 3] - TRUE[:3, 3]).max() < 0.02
     naive = S / np.sqrt(8.0 / PITCH)
     assert run.u.mean() > 1.8 * naive  # neighbours share their noise
+
+
+def test_an_evaluated_scan_is_what_it_was(body, scan, tmp_path, unchanged):
+    line, ball, _, _, _ = scan
+    q = readings(ball)[:, [CHAIN.axis_index(n) for n in "XYZ"]]
+    unchanged(facts(evaluated(written(tmp_path / "s.csv", line, q), body)))
 
 
 def test_a_run_of_a_scan_can_be_written_and_read(body, scan, tmp_path):

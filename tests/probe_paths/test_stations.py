@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from briefs import project_with
 from scipy.spatial.transform import Rotation
+from unchanged import facts, folded
 
 from matstd.api.replanning import by_probe, of_one_setup
 from matstd.artefact.brief import read_project
@@ -91,6 +92,12 @@ def parts(texts, small):
 def seen(parts, small):
     """Their run."""
     return evaluate(parts, small, golden.machine(), 1e-3)
+
+
+def test_the_stations_are_what_they_were(plans, stations, texts, parts, seen, unchanged):
+    lines = [facts((n, p.visits, p.request, p.start, p.contact, p.refused)) for n, p in plans]
+    lines += [folded(p.text) for p in all_programs(stations).programs]
+    unchanged("\n".join([*lines, facts(parts), facts(seen.deviation), facts(seen.touches.setups)]))
 
 
 def test_every_touch_is_made_by_the_first_probe_that_can(plans, small, wanted):
