@@ -180,7 +180,7 @@ class _Smooth:
 
     def scatter(self, d: Array) -> float:
         """Standard deviation of a point beside the fit, mm."""
-        return float(np.sqrt(self._squares(d) / max(len(d) - self.used, 1.0)))
+        return float(np.sqrt(self._squares(d) / (len(d) - self.used)))
 
     def _squares(self, d: Array) -> float:
         left = d - self.B @ self.coefficients(d)

@@ -33,11 +33,6 @@ class ProbeShape:
                 f" {self.ball_radius:g} mm"
             )
 
-    @property
-    def length(self) -> float:
-        """From the ball centre to the end of the last cylinder, mm."""
-        return self.cylinders[-1][0]
-
     def stations(self) -> tuple[Array, Array]:
         """Balls on the tool axis that cover all cylinders, and more before their front faces.
 

@@ -72,7 +72,7 @@ class TwinContact:
         program, step = self.touches[row]
         # from the start of the programmed touch: the second stroke begins within the errors
         touch = replace(step, q=q - along * way, direction=way, index=0, on_miss=[])
-        alone, noise = replace(program, steps=(touch,)), self.noise[row : row + 1]
+        alone, noise = replace(program, steps=(touch,)), self.noise[[row]]
         solver = ContactSolver(alone, self.standard, self._machine_at(row), noise)
         now = np.array([time.monotonic() - self.begin])
         solver.solve(now)

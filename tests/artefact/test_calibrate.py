@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from unchanged import facts
 
 from matstd.artefact.body import read_standard, write_standard
 from matstd.artefact.body.spline import greville
@@ -84,6 +85,20 @@ def found(nominal, tmp_path_factory):
     path = tmp_path_factory.mktemp("cmm") / "cmm.csv"
     written(path, cmm_rows(nominal, np.random.default_rng(1)), nominal.fingerprint)
     return fit_calibration(nominal, read_cmm_points(path, nominal), NOISE, 0.2 * UM, 0.0)
+
+
+def test_features_without_points_stay_as_designed(nominal, golden, tmp_path, unchanged):
+    """Three balls of four and one face of two are measured."""
+    four = (*nominal.spheres, golden.sphere("SPH4", 60.0, -60.0))
+    nominal = replace(nominal, spheres=four)
+    rows = cmm_rows(replace(nominal, spheres=four[:3]), np.random.default_rng(1))
+    path = written(tmp_path / "cmm.csv", [r for r in rows if not r[0].startswith("FF2")])
+    found = fit_calibration(nominal, read_cmm_points(path, nominal), NOISE, 0.2 * UM, 0.0)
+    assert found.standard.spheres[3] is nominal.spheres[3]
+    assert found.standard.patches[1] is nominal.patches[1]
+    assert set(found.standard.known.features) == {"SPH1", "SPH2", "SPH3", "FF1"}
+    assert "no points on SPH4, FF2: taken as designed" in " ".join(found.remarks)
+    unchanged(facts(replace(found, remarks=())))
 
 
 def aligned_truth(nominal) -> np.ndarray:

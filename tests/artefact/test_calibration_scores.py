@@ -76,6 +76,26 @@ def test_a_line_is_long_dense_and_narrow() -> None:
     assert not dense_lines(area, (10.0, 10.0)).judging.any()
 
 
+@pytest.mark.parametrize(
+    ("half", "pitch", "scatter", "is_seen"),
+    [
+        (6.0, 1.0, 0.0, True),  # 0.6 of the face
+        (5.5, 1.0, 0.0, False),
+        (8.0, 2.0, 0.0, True),
+        (8.4, 2.1, 0.0, False),
+        (9.0, 1.5, 0.09, True),  # 0.18 mm from a point to the next, half the width of a line
+        (9.0, 1.5, 0.15, False),  # two lines, of points 3 mm apart
+    ],
+)
+def test_where_a_line_ends(half: float, pitch: float, scatter: float, is_seen: bool) -> None:
+    u = np.arange(-half, half + 0.01, pitch)
+    line = np.column_stack([u, 1.3 + scatter * (-1.0) ** np.arange(len(u))])
+    aside = np.column_stack([np.zeros(20), np.linspace(-9.0, -5.0, 20)])
+    found = dense_lines(np.concatenate([aside, line]), (10.0, 10.0))
+    assert found.seen == (is_seen, False)
+    assert found.judging[20:].all() == found.judging.any() == is_seen
+
+
 def test_a_dented_ball_does_not_conform_to_its_grade(drawn) -> None:
     """A flattened side, 8 um deep, of a ball of grade 5."""
     rows = cmm_sets.Piece(tomllib.loads(drawn.read_text()), 1, 0.0).rows()

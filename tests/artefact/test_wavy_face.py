@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from itertools import pairwise
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,8 +11,9 @@ from matstd.artefact.body import Base, Limits, max_slope, min_concave_radius
 from matstd.artefact.hidden import Scan, scanned, write_scan_path
 from matstd.artefact.hidden.scan_path import scan_path
 from matstd.artefact.layout import Blank, Wave, holes_on, wavy_face, with_spheres
-from matstd.artefact.place import Family, FamilyFigures
-from matstd.artefact.place.family import chosen_family, flat_pads
+from matstd.artefact.place import Family, FamilyFigures, families
+from matstd.artefact.place.family import chosen_family, flat_pads, score_of
+from matstd.artefact.price import Estimate
 from matstd.artefact.worth import ball_places
 from matstd.twin.errors import NotBuildable, NotReachable
 from matstd.twin.units import DEG, UM
@@ -109,6 +111,35 @@ def test_a_family_that_cannot_be_built_does_not_win():
     )
     assert chosen_family(figures, "prove", 1.0 * UM) is Family.FACES
     assert chosen_family(figures, "identify", 1.0 * UM) is Family.FACES
+
+
+@pytest.mark.parametrize(
+    ("goal", "score"),
+    [
+        ("identify", 500.0),  # 1 / 0.002 mm
+        ("worst", 250.0),
+        ("prove", 6.0),
+        ("minutes", 2.0),  # 100 touches of 3.6 s are 6 min, and 3 min of scan: 6 / sqrt(9)
+        ("price", 0.01),
+    ],
+)
+def test_the_figure_of_a_goal_by_hand(goal, score):
+    one = FamilyFigures(
+        Family.WAVY, rms_user=2.0 * UM, worst_user=4.0 * UM, signal=6.0, touches=100,
+        scan_minutes=3.0, price=Estimate(100.0, 10.0),
+    )  # fmt: skip
+    assert score_of(one, goal) == pytest.approx(score)
+    assert score_of(replace(one, price=None), "price") == 1.0
+
+
+def test_where_no_family_can_be_built_the_first_reason_is_reported(monkeypatch):
+    def refused(_, family, like=None):
+        raise NotBuildable(f"no room for {family}")
+
+    monkeypatch.setattr(families, "_built", refused)
+    site = SimpleNamespace(options=SimpleNamespace(family="auto"))
+    with pytest.raises(NotBuildable, match="no room for balls"):
+        families.built_family(site)
 
 
 def test_means_of_a_scan_have_the_noise_of_their_points(criterion):

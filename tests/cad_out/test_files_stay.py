@@ -5,10 +5,13 @@ import re
 import zipfile
 from pathlib import Path
 
+import numpy as np
 import pytest
 from unchanged import Unchanged, folded, summary
 
+from matstd.cad_out.meshes import mesh_volume
 from matstd.cad_out.verify.conformity import write_conformity
+from matstd.twin.sampling import grid_points
 
 
 def entities(text: str) -> str:
@@ -31,6 +34,38 @@ def chunk(path: Path) -> str:
     """What a GLB file says of its buffers."""
     data = path.read_bytes()
     return json.dumps(json.loads(data[20 : 20 + int.from_bytes(data[12:16], "little")]), indent=1)
+
+
+def test_a_foreign_step_file_is_meshed_whole(upright, built) -> None:
+    """All bodies of the file, balls and screws too, with the outside outwards."""
+    from matstd.cad_out.kernel.faces import faces_of, volume
+    from matstd.cad_out.kernel.reader import read_shape, tessellate
+
+    shape = read_shape(built[0] / "standard.step")
+    corners, triangles, owner = tessellate(shape, 0.1)
+    assert volume(shape) > built[1].volume  # the screws belong to the assembly alone
+    assert mesh_volume(corners, triangles) == pytest.approx(volume(shape), rel=2e-3)
+    assert np.array_equal(np.unique(owner), np.arange(len(faces_of(shape))))
+
+
+def test_a_rational_spline_is_evaluated_as_the_kernel_does() -> None:
+    """A quarter of a cylinder as a spline: every point is at its radius from the axis."""
+    from OCP.BRepAdaptor import BRepAdaptor_Surface
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_NurbsConvert
+    from OCP.BRepPrimAPI import BRepPrimAPI_MakeCylinder
+
+    from matstd.cad_out.kernel.faces import faces_of
+    from matstd.cad_out.kernel.reader import _in_space
+
+    solid = BRepPrimAPI_MakeCylinder(7.0, 20.0, 0.5 * np.pi).Shape()
+    faces = faces_of(BRepBuilderAPI_NurbsConvert(solid, True).Shape())
+    surfaces = [BRepAdaptor_Surface(face) for face in faces]
+    (curved,) = [s for s in surfaces if s.BSpline().IsURational() or s.BSpline().IsVRational()]
+    u = np.linspace(curved.FirstUParameter(), curved.LastUParameter(), 7)
+    v = np.linspace(curved.FirstVParameter(), curved.LastVParameter(), 5)
+    found = _in_space(curved)(grid_points(u, v))
+    assert np.hypot(*found[:, :2].T) == pytest.approx(7.0, abs=1e-12)
+    assert np.ptp(found, axis=0) == pytest.approx([7.0, 7.0, 20.0])
 
 
 @pytest.mark.parametrize(

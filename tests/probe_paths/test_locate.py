@@ -9,7 +9,7 @@ from programs import all_read, as_read, ran
 from unchanged import facts, folded
 
 from matstd.api.replanning import feeds_of
-from matstd.artefact.body import Base, contact
+from matstd.artefact.body import Base, Core, contact
 from matstd.artefact.tool import Probe
 from matstd.probe_paths.campaign import VirtualMachine, ball_centres, check_moves, simulate_search
 from matstd.probe_paths.control import read_log, read_program
@@ -104,6 +104,16 @@ def test_search_and_place_are_what_they_were(search, program, log, small, chain,
     rng = np.random.default_rng(0)
     found = find_standard(small, golden.setup(), ball_centres(part, chain), 3.0, rng, SPREAD)
     unchanged("\n".join([search.programs[0].text, folded(facts(program.steps)), facts(found)]))
+
+
+def test_heights_over_a_core_are_those_of_a_frustum(small):
+    """From above: flat within 20 mm of the axis, then a cone down to the plate at 30 mm."""
+    bare = replace(small, patches=(), spheres=(), core=Core(30.0, 20.0, 60.0))
+    relief = Relief.of(bare, 3.0)
+    radius = np.array([0.0, 20.0, 25.0, 28.0, 30.0, 40.0])
+    i, j = np.round(relief.index(np.column_stack([radius, np.zeros(6)]))).astype(int)
+    assert relief.top[i, j] == pytest.approx([60.0, 60.0, 40.0, 28.0, 20.0, 20.0])
+    assert relief.ball_at(np.array([[0.0, 0.0], [50.0, 0.0]])) == pytest.approx([63.0, 23.0])
 
 
 def test_few_touches_are_refused(log, small, chain, golden):

@@ -12,6 +12,7 @@ from unchanged import facts
 from matstd.artefact.body import Known
 from matstd.probe_paths.campaign import VirtualMachine, evaluate
 from matstd.probe_paths.campaign.contact_solver import FIRST_MORNING
+from matstd.probe_paths.campaign.log_parts import distinct_parts
 from matstd.probe_paths.campaign.virtual_run import run_programs
 from matstd.probe_paths.control import read_log
 from matstd.probe_paths.language import Dialect, MaskLine, parse_mask
@@ -21,6 +22,7 @@ from matstd.twin.files import read_run, write_run
 from matstd.twin.frames import pose, rotation
 from matstd.twin.model import contribution
 from matstd.twin.record import computed_deviation
+from matstd.twin.rows import picked
 from matstd.twin.units import NM, UM, URAD
 
 PRINTED = 1e-6
@@ -73,6 +75,17 @@ def test_logs_hold_what_the_machine_did(runs, parts, read, chain):
 def test_runs_logs_and_evaluation_are_what_they_were(runs, parts, small, chain, unchanged):
     made = [(r.q, r.time, r.feature, r.meeting, r.reached, r.outcome, r.end) for r in runs]
     unchanged("\n".join([facts(made), facts(parts), facts(evaluate(parts, small, chain, U))]))
+
+
+def test_two_logs_of_one_run_give_every_touch_once(parts):
+    """One cut off at its end, the other one without its beginning."""
+    one = parts[0]
+    n = len(one.number)
+    head, tail = picked(one, np.arange(n - 2)), picked(one, np.arange(4, n))
+    found = distinct_parts([tail, head])
+    assert [len(part.number) for part in found] == [n - 2, 2]
+    assert np.array_equal(np.concatenate([part.number for part in found]), one.number)
+    assert f"{n - 6} touches stand in {one.path} too" in found[1].remarks[-1]
 
 
 def test_z_is_that_of_the_gauge_point_and_x_y_those_of_the_ball(parts, runs, chain):
