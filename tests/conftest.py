@@ -32,6 +32,7 @@ pytest_plugins = [
     "standards",
     "runs",
     "unchanged",
+    "workshop",
 ]
 """Fixtures that the tests of several rooms share, in `tests/fixtures`."""
 

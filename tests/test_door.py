@@ -14,7 +14,6 @@ import numpy as np
 import pytest
 
 import matstd
-from matstd.artefact.body import write_standard
 from matstd.cli import main
 from matstd.compensation.field import MachineErrors
 from matstd.diagnosis.fit import fit_run
@@ -22,70 +21,13 @@ from matstd.twin.library import ordinary_model, parse_effect
 from matstd.twin.units import UM
 
 ROOT = Path(__file__).parents[1]
-EXAMPLES = ROOT / "examples"
 API = sorted((ROOT / "matstd" / "api").glob("[a-z]*.py"))
 
 
-@pytest.fixture(scope="module")
-def folder(tmp_path_factory):
-    """Files of one machine, as the examples name them: run, standard, program, log, effects."""
-    place = tmp_path_factory.mktemp("door")
-    sys.path.append(str(EXAMPLES))
-    ex06, ex07 = (importlib.import_module(n) for n in ("ex06_step", "ex07_program"))
-    shutil.copy(EXAMPLES / "hsm600u-machine.toml", place / "machine.toml")
-    shutil.copy(EXAMPLES / "my_effects.py", place / "my_effects.py")
-    project = (EXAMPLES / "hsm600u.toml").read_text(encoding="utf-8")
-    project = project.replace("hsm600u-machine.toml", "machine.toml")
-    (place / "project.toml").write_text(project, encoding="utf-8")
-    run = matstd.read_run(EXAMPLES / "hidden_effect" / "warm_up.csv")
-    run = run[run.touches.pose % 2 == 0]  # every second table pose: a diagnosis in half the time
-    matstd.write_run(place / "run.csv", run, "machine.toml")
-    write_standard(place / "standard.toml", ex06.standard())
-    ex07.main()["programs"].write(place / "programs")
-    files = [place / "programs" / "MS_A_1.H"], place / "standard.toml", place / "machine.toml"
-    for seed, name in enumerate(("probed.csv", "monday.csv", "friday.csv")):
-        logs = place / "logs" if seed == 0 else None
-        matstd.simulate(*files, seed=seed).save(place / name, place / "machine.toml", logs)
-    (place / "drift.csv").write_text(drift_log(), encoding="utf-8")
-    shutil.copytree(EXAMPLES / "trend", place / "trend", ignore=shutil.ignore_patterns("*.py"))
-    (place / "cmm.csv").write_text(cmm_points(ex06.standard()), encoding="utf-8")
-    return place
-
-
-def cmm_points(standard):
-    """Points of a CMM on every ball and face as designed, 0.3 µm of noise."""
-    rng = np.random.default_rng(1)
-    rows = ["feature,x [mm],y [mm],z [mm]"]
-    for ball in standard.spheres:
-        n = rng.normal(size=(25, 3)) * [1.0, 1.0, 0.0] + [0.0, 0.0, 1.0]
-        n /= np.linalg.norm(n, axis=1, keepdims=True)
-        rows += lines(ball.name, ball.centre + ball.radius * n, rng)
-    for patch in standard.patches:
-        uv = rng.uniform(-1.0, 1.0, (120, 2)) * patch.half_size
-        rows += lines(patch.name, patch.point(uv), rng)
-    return "\n".join(rows) + "\n"
-
-
-def drift_log():
-    """Eight hours in which a frame warms up and carries Z with it, 40 min later."""
-    rng = np.random.default_rng(2)
-    hours = np.arange(0.0, 8.01, 1.0 / 12.0)
-    warm = 20.0 + 5.0 * np.abs(np.sin(0.9 * hours))
-    late = 20.0 + 5.0 * np.abs(np.sin(0.9 * np.maximum(hours - 0.7, 0.0)))
-    z = 6.0 * (late - 20.0) + 0.2 * rng.normal(size=len(hours))
-    rows = zip(3600.0 * hours, warm, z, strict=True)
-    return "time_s,frame_degC,z_um\n" + "".join(f"{t:.0f},{w:.3f},{d:.3f}\n" for t, w, d in rows)
-
-
-def lines(name, points, rng):
-    noisy = points + 0.3e-3 * rng.normal(size=points.shape)
-    return [f"{name}_{k},{x:.6f},{y:.6f},{z:.6f}" for k, (x, y, z) in enumerate(noisy)]
-
-
 @pytest.fixture
-def there(folder, tmp_path, monkeypatch):
+def there(workshop, tmp_path, monkeypatch):
     """The folder of the examples, for one test."""
-    shutil.copytree(folder, tmp_path, dirs_exist_ok=True)
+    shutil.copytree(workshop, tmp_path, dirs_exist_ok=True)
     monkeypatch.chdir(tmp_path)
     return tmp_path
 

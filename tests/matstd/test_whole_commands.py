@@ -1,0 +1,114 @@
+"""What commands print and write on the files of one machine, whole."""
+
+import re
+import shutil
+
+import bench
+import pytest
+from scenes import scenes_alone
+from written import folder_text
+
+from matstd.cli import COMMANDS, _parser, main
+from matstd.twin.files import read_machine
+
+STATE = "--after 90 --rpm 9000 --add thermal-lag(EZZ)=25um,tau=18min"
+ERRORS = f"machine.toml --errors errors.toml --tool-length 160 --datum Z=-400 {STATE}"
+PROGRAM = """G21 G90 G94
+T1 M6
+G0 X-60 Y10 Z50
+G1 Z0 F800
+G2 X60 Y10 I60 J0
+G1 X60 Y-40 B-20
+M2
+"""
+POSES = """X_mm,Y_mm,Z_mm,B_deg,C_deg
+0,0,-300,0,0
+120,-80,-250,-45,90
+-150,150,-400,20,-180
+"""
+COMMANDS_ON = {
+    "volumetric": "volumetric machine.toml errors.toml poses.csv -o out.csv",
+    "sensitivity": "sensitivity machine.toml poses.csv -o out.csv",
+    "study": "sensitivity project.toml -o out --draws 300 --tolerance-um 300",
+    "contributions": f"contributions {ERRORS} --program part.ngc -o out",
+    "contributions-poses": f"contributions {ERRORS} --poses poses.csv -o out",
+    "tables": f"compensate {ERRORS} --tables out",
+    "program": f"compensate {ERRORS} --program part.ngc -o out.ngc",
+    "show": f"show {ERRORS} --program part.ngc -o out.html",
+    "show-probing": "show machine.toml --program programs/MS_A_1.H --standard standard.toml "
+    "-o out.html",
+    "calibrate": "calibrate standard.toml --points cmm.csv -o out.toml",
+    "dmis": "calibrate standard.toml --program --orientation 90 -o out.dmi",
+    "uncertainty": "uncertainty monday.csv friday.csv probed.csv --standard standard.toml "
+    "-o out.json --page out.html",
+    "simulate": "simulate programs/MS_A_1.H --standard standard.toml --machine machine.toml "
+    "--random-errors --seed 5 --body-degC 22 --add thermal-lag(EZZ)=25um,tau=18min "
+    "--setup-error X=50um,C=0.01deg --probe-error radius=2um -o out.csv --logs out",
+    "evaluate": "evaluate logs/MS_A_1.TXT --standard standard.toml --machine machine.toml "
+    "-o out.csv",
+    "compare": "compare run.csv -o out",
+    "trend": "trend trend -o out",
+    "thermal": "thermal drift.csv --train-until 5 --sensor-noise 0.1 --probe-every 2 -o out",
+    "machines": "machines",
+    "machine": "machines hmc1995",
+    "its-errors": "machines hmc1995 --errors",
+    "effects": "effects",
+    "effect": "effects thermal-lag",
+    "effects-by-word": "effects spindle growth",
+    "new-machine": "new machine --like fork-portal",
+    "new-project": "new project --machine machine.toml --table-mm 320",
+    "new-run": "new run",
+    "new-effect": "new effect",
+    "examples": "examples",
+}
+
+
+FEW = "poses = 100"
+
+
+def sizes(folder) -> str:
+    """Errors of different sizes: which is the largest depends on no rounding."""
+    names = (symbol.name for symbol in read_machine(folder / "machine.toml").symbols)
+    return "[errors.parameters]\n" + "".join(
+        f"{name} = [{10 + k}, {20 + 2 * k}]\n" for k, name in enumerate(names)
+    )
+
+
+@pytest.fixture
+def there(workshop, tmp_path, monkeypatch):
+    """The files of the workshop for one command."""
+    shutil.copytree(workshop, tmp_path, dirs_exist_ok=True)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "100")
+    text = (tmp_path / "project.toml").read_text(encoding="utf-8").replace("poses = 2000", FEW)
+    (tmp_path / "project.toml").write_text(text + sizes(tmp_path), encoding="utf-8")
+    (tmp_path / "part.ngc").write_text(PROGRAM, encoding="utf-8")
+    (tmp_path / "poses.csv").write_text(POSES, encoding="utf-8")
+    (tmp_path / "errors.toml").write_text(bench.ERRORS, encoding="utf-8")
+    return tmp_path
+
+
+@pytest.mark.parametrize("words", COMMANDS_ON.values(), ids=COMMANDS_ON)
+def test_what_a_command_prints_and_writes(
+    words, there, rendered_alone, monkeypatch, capsys, unchanged
+) -> None:
+    figures, scenes = rendered_alone(), scenes_alone(monkeypatch)
+    before = {p: p.stat().st_mtime_ns for p in there.rglob("*")}
+    assert main(words.split()) == 0
+    for path, time in before.items():
+        if path.is_file() and path.stat().st_mtime_ns == time:
+            path.unlink()
+    printed = re.sub(r"(?m)\s+$", "", capsys.readouterr().out)
+    unchanged("\n".join([printed, folder_text(there, figures), *scenes, ""]))
+
+
+def test_what_commands_can_be_given(monkeypatch, unchanged) -> None:
+    monkeypatch.setenv("COLUMNS", "100")
+    lines = []
+    for command in COMMANDS:
+        parser = _parser([command])._subparsers._group_actions[0].choices[command]
+        lines.append(parser.format_help())
+        for one in parser._actions[1:]:
+            kind = getattr(one.type, "__name__", None)
+            lines.append(f"{one.dest}: {one.nargs} {one.default} {kind} {one.required}")
+    unchanged("\n".join(lines) + "\n")
