@@ -86,6 +86,7 @@ def test_machine_in_base_units(machine: Path) -> None:
         ("C' B' X' f Y Z", "C' C' X' f Y Z", "chain: found axis 'C' twice"),
         ('"machine/1"', '"machine/2"', 'format.*expected "machine/1"'),
         ("[-500.0, 0.0]", "[-500.0, 0.0", "TOML"),
+        ("[-500.0, 0.0]", "[−500.0, 0.0]", "TOML file and - for a minus sign: "),
         ("[axis.Z]\nrange = [-500.0, 0.0]\n", "", r"axis\.Z\.range: found nothing"),
         (
             "[axis.Z]\n",

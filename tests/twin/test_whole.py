@@ -36,6 +36,11 @@ def test_names_that_no_system_takes(tmp_path: Path, name: str) -> None:
     assert list(tmp_path.iterdir()) == []
 
 
+def test_no_text_gets_the_name_of_a_spreadsheet(tmp_path: Path) -> None:
+    with pytest.raises(DesignError, match=r"Run\.XLSX: no spreadsheet is written, .* run\.csv"):
+        refuse_to_overwrite(tmp_path / "Run.XLSX", force=True)
+
+
 def test_the_longest_name_is_written(tmp_path: Path) -> None:
     path = tmp_path / ("x" * 251 + ".csv")
     write_whole(path, "x")

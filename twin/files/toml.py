@@ -55,6 +55,7 @@ _KINDS = {
 _STATED = re.compile(rf'^(?:# *)?format *= *"({"|".join(_KINDS)})/', re.MULTILINE)
 
 _DECIMAL_COMMA = re.compile(r"=\s*-?\d+,\d+\s*(?:$|[,}#])")
+_LONG_MINUS = re.compile(r"[\N{MINUS SIGN}\N{EN DASH}]\s*\d")
 
 
 def _bytes(path: str | Path) -> bytes:
@@ -156,6 +157,8 @@ def _no_toml(error: tomllib.TOMLDecodeError, text: str, path: str | Path, twice:
         name = re.sub(r"', '", ".", repeated.group(1)).strip("'")
         return BadFile(path, place, f"table [{name}] a second time", twice.format(name=name))
     comma = " and a point in decimal numbers" if _DECIMAL_COMMA.search(line) else ""
+    if _LONG_MINUS.search(line):
+        comma += " and - for a minus sign"
     written = next((ours for begin, ours in _GRAMMAR.items() if why.startswith(begin)), _STATEMENT)
     expected = f"a whole TOML file{comma}: {written}"
     found = repr(line[:60]) if line else "an end"

@@ -28,6 +28,7 @@ NOT_WRITABLE = (
 )
 """Errors that a user can correct: a full disk, no permission to write."""
 
+SPREADSHEETS = (".xls", ".xlsx", ".xlsm", ".xlsb", ".ods")  # no output is one
 AT_ONCE = 0.1  # wait for a folder that another run holds for its whole duration, s
 UNFINISHED: set[Path] = set()  # unfinished files of this process; they are removed when it is ended
 _ASKED: dict[Path, bool] = {}
@@ -186,7 +187,12 @@ def claimed(folder: str | Path, force: bool = False) -> Iterator[Path]:
 
 
 def refuse_to_overwrite(path: str | Path, force: bool = False) -> None:
-    """Raise DesignError if the file exists and is not to be overwritten, now or when written."""
+    """Raise DesignError if the file exists and is not to be overwritten, now or when written.
+
+    A name that spreadsheet programs take for theirs is refused: what is written is text.
+    """
+    if Path(path).suffix.lower() in SPREADSHEETS:
+        raise DesignError(f"{path}: no spreadsheet is written, expected a name such as run.csv")
     if not force and os.path.exists(path):
         raise DesignError(f"{path}: already exists; choose another name or give --force")
     if "\0" not in str(path):  # else it is refused when it is written
