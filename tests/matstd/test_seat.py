@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import trimesh
+from unchanged import Unchanged, folded
 
 from matstd.artefact.brief import Brief, base_of, read_project
 from matstd.artefact.brief.workshop_tables import BodyTable, TableTable
@@ -31,6 +32,21 @@ NEAR = 0.6
 @pytest.mark.parametrize("path", [p for p in ALL if not p.stem.endswith("machine")], ids=str)
 def test_every_project_of_the_examples_stands(path: Path) -> None:
     check_seat(read_project(path))
+
+
+def test_faults_of_seats_are_what_they_were(unchanged: Unchanged) -> None:
+    """Beside and over the edge of tables, above and in them, tilted, with clamps anywhere."""
+    project, rng = example(), np.random.default_rng(2)
+    said = []
+    for place in ((0, 0, 0), (170, 0, 0), (0, -90, 12), (30, 20, -4), (400, 0, 0), (9, 0, 40)):
+        turned = rotation(np.array([0.002 * place[2], 0.0, 0.01 * place[0]]))
+        there = replace(project, setups=(Setup("a", pose(turned, np.array(place, float))),))
+        for table in ({"diameter_mm": 320.0}, {"sides_mm": [420.0, 300.0], "height_mm": 6.0}):
+            said.append(refusal(with_table(there, **table)))
+    for _ in range(25):
+        said.append(refusal(with_bodies(project, placed(rng, np.eye(4)))))
+    said += [refusal(cradle_post(height)) for height in (160.0, 170.0, 180.0, 186.0)]
+    unchanged(folded("\n".join(said)).replace(str(EXAMPLES), ""))
 
 
 def example(**limits: float) -> Brief:
