@@ -221,7 +221,7 @@ def test_travels_and_refusals_are_what_they_were(
             found = feasibility(read_project(changed(tmp_path, name, project, machine)))
             lines.append(facts((found.poses, found.room and found.room.faces)))
             found.check()
-        except (BadFile, NotReachable) as error:
+        except (NotBuildable, NotReachable) as error:
             lines.append(f"{name}: {error}")
     unchanged(folded("\n".join(lines)).replace(f"{tmp_path}", ""))
 
