@@ -1,6 +1,7 @@
 """Laws without a cause: found in exactly simulated runs, and none where there is none."""
 
 import json
+import re
 import subprocess
 import sys
 import tomllib
@@ -13,6 +14,7 @@ from simulator_case import Ordinary, read_back, visible_size
 from simulator_case import named as hidden_effect
 from simulator_experiment import MACHINES, STATED_NOISE, random_experiment
 from simulator_laws import drawn, law_case
+from written import folder_text
 
 from matstd.api.diagnosing import compare, diagnose
 from matstd.cli import main
@@ -217,25 +219,20 @@ def test_laws_are_learnt_in_the_place_of_imitators_alone(slipped) -> None:
 
 
 def test_the_command_writes_an_effect_that_the_other_commands_take(
-    stylus, tmp_path, capsys, unrendered
+    stylus, tmp_path, capsys, rendered_alone, monkeypatch, unchanged
 ) -> None:
-    texts = stylus[0]
+    figures, texts = rendered_alone(), stylus[0]
     for name, text in (("run.csv", texts[0]), ("two.csv", texts[1])):
         (tmp_path / name).write_text(text, encoding="utf-8")
     (tmp_path / "machine.toml").write_text(MACHINES["hmc1995"], encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "100")
     out = tmp_path / "out"
-    arguments = ["--second-run", str(tmp_path / "two.csv"), "-o", str(out)]
-    assert main(["learn", str(tmp_path / "run.csv"), *arguments]) == 0
-    said = capsys.readouterr().out
-    assert "a step over time" in said
-    assert "A second run" in said
-    table = json.loads((out / "law.json").read_text(encoding="utf-8"))
-    assert table["laws"][0]["family"] == "step"
-    assert table["laws"][0]["belongs_to"] == "run"
-    second = table["second_run"]
-    assert second["with_um"] == second["without_um"] < second["with_kept_times_um"]
+    assert main(["learn", "run.csv", "--second-run", "two.csv", "-o", "out"]) == 0
+    # of a curve the search ends elsewhere on another processor
+    written = re.sub(r".*evidence_of_curve.*\n", "", folder_text(out, figures))
+    unchanged(f"{capsys.readouterr().out}\n{written}\n")
     effect = out / "effect.py"
-    assert len(effect.read_text(encoding="utf-8").splitlines()) < 45
     ruff = [sys.executable, "-m", "ruff", "check", "-q", "--select", "E9,F", str(effect)]
     subprocess.run(ruff, check=True)
     # what the run determines stands in the model, as in that of a diagnosis

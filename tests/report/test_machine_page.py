@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from browser import faults, opened, page_data, requests
+from unchanged import summary
 
 import matstd
 from matstd.compensation.field import MachineErrors, State
@@ -127,6 +128,16 @@ def test_every_axis_has_a_body_and_its_letter(path):
         held = {link.name, "f" if is_last else carrier}
         points = np.concatenate([b.corners.reshape(-1, 3) for b in bodies if b.on in held])
         assert np.ptp(points @ link.direction) >= np.ptp(link.range)
+
+
+def test_bodies_of_all_machines(unchanged):
+    lines = []
+    for path in (*MACHINES, HSM):
+        bodies, letters = chain_bodies(read_machine(path), LENGTH)
+        lines.append(path.stem)
+        lines += [f"{b.on} {b.colour} {summary(b.corners)}" for b in bodies]
+        lines += [f"{k.text} on {k.on} {summary(k.place)}" for k in letters]
+    unchanged("\n".join(lines) + "\n")
 
 
 def test_bearings_stand_on_a_foot_that_nothing_which_swings_reaches():

@@ -6,6 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from browser import page_data
+from unchanged import page_text
+from written import live_lines
 
 from matstd.compensation.field import MachineErrors
 from matstd.probe_paths.control import interpret
@@ -115,6 +117,10 @@ def test_bodies_are_those_of_the_plan(plan):
     for patch in plan.standard.patches:
         corner = apply(plan.setup.T_table_artefact, patch.point(np.array([patch.half_size])))
         assert np.linalg.norm(at_home - corner, axis=1).min() < 1e-9
+
+
+def test_the_whole_page(page, unchanged):
+    unchanged("\n".join([page_text(page), *live_lines(page), ""]))
 
 
 def test_the_page_holds_it_all_and_loads_nothing(page, data, plan, read):

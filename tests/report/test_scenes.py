@@ -6,6 +6,7 @@ from itertools import combinations
 import numpy as np
 import pytest
 import trimesh
+from scenes import scenes_alone
 
 from matstd.cad_out.kernel.process import Ending
 from matstd.report.scenes import Scene, draw_standard, draw_volumes, standard_scene
@@ -127,6 +128,17 @@ def test_a_renderer_that_fails_names_the_package_and_nothing_is_written(tmp_path
         draw_volumes({tmp_path / "a.png": [scene()]})
     assert "\n" not in str(caught.value)
     assert list(tmp_path.iterdir()) == []
+
+
+def test_whole_scenes(upright, mesh, monkeypatch, tmp_path, unchanged):
+    """Of values that grow, of equal ones with the standard in them, and of the standard."""
+    made, T = scenes_alone(monkeypatch), np.eye(4)
+    T[2, 3] = -380.0
+    lines = {"B": np.array([[0.0, 0.0, -260.0], [0.0, 1.0, 0.0]])}
+    flat = scene(np.full((5, 4, 3), 7.0), T_readings_artefact=T)
+    draw_volumes({tmp_path / "volumes.png": [scene(lines=lines), flat]}, mesh)
+    draw_standard(upright, mesh, tmp_path / "standard.png")
+    unchanged("\n".join([*made, ""]))
 
 
 # the standard by itself

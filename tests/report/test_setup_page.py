@@ -5,7 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from figures import render_alone
 from html_tables import shown_tables
+from unchanged import drawn, page_text
 
 from matstd.artefact.body import Meeting, contact
 from matstd.artefact.reach import TABLE, Solid
@@ -17,8 +19,8 @@ from matstd.probe_paths.locate import companions
 from matstd.probe_paths.plan import PlanOptions, Refusal, plan_touches, requests_at
 from matstd.probe_paths.stations import Station
 from matstd.report.pages import write_setup_page
-from matstd.report.pages.setup_page import PAGE, PICTURE
-from matstd.report.plots import draw_setup
+from matstd.report.pages.setup_page import PAGE
+from matstd.report.plots import draw_order, draw_setup, draw_touches
 from matstd.twin.frames import apply, inverse, pose, rotation, turn
 from matstd.twin.machine import Axis, linear_directions, make_chain, tip
 from matstd.twin.record import Setup
@@ -26,18 +28,35 @@ from matstd.twin.units import DEG
 
 
 @pytest.fixture(scope="module")
-def sheet(golden, tmp_path_factory):
+def figures():
+    """What the figures of the sheet consist of."""
+    return {}
+
+
+@pytest.fixture(scope="module")
+def sheet(golden, figures, tmp_path_factory):
     folder = tmp_path_factory.mktemp("sheet") / "setup"
     programs = golden.programs()
     plan = golden.plan()
     others = companions(plan, Dialect(), Feeds(), 80.0, False)
     others.write(folder)
-    page = write_setup_page(folder, [Station(plan, Dialect(), programs)], 0, others)
+    with pytest.MonkeyPatch.context() as patch:
+        recorded = render_alone(patch)
+        page = write_setup_page(folder, [Station(plan, Dialect(), programs)], 0, others)
+    figures |= recorded
     assert page == folder / PAGE
-    assert (folder / PICTURE).stat().st_size > 4_000
     assert "RAISED BY +80.0 MM" in (folder / "MS_A_DRY.H").read_text(encoding="ascii")
     assert "SEARCH FROM ABOVE" in (folder / "MS_A_LOC.H").read_text(encoding="ascii")
     return page.read_text(encoding="utf-8"), programs
+
+
+def test_the_whole_sheet_and_its_figures(sheet, figures, unchanged):
+    unchanged("\n".join([page_text(sheet[0]), *figures.values(), ""]))
+
+
+@pytest.mark.parametrize("draw", [draw_touches, draw_order])
+def test_pictures_of_the_plan(draw, golden, unchanged):
+    unchanged(drawn(draw(golden.plan())) + "\n")
 
 
 def test_touches_left_out_for_one_reason_stand_in_one_line(golden, tmp_path):
@@ -156,9 +175,9 @@ def test_a_machine_of_three_axes_has_no_word_of_turns(golden, tmp_path):
 def test_the_picture_shows_the_standard_large_on_any_table(golden, half, is_whole) -> None:
     plan = golden.plan()
     shop = replace(plan.options.workshop, table=Solid(TABLE, (half, half), False, -60.0, 0.0))
-    drawn = draw_setup(replace(plan, options=replace(plan.options, workshop=shop)))
-    top = drawn.axes[0]
+    shown = draw_setup(replace(plan, options=replace(plan.options, workshop=shop)))
+    top = shown.axes[0]
     width = np.ptp(top.get_xlim())
     assert (width > 2.0 * half) == is_whole
     assert width < 3.0 * 2.0 * plan.standard.base.body.half_size[0]
-    assert ("the whole table, mm" in {ax.get_title("left") for ax in drawn.axes}) != is_whole
+    assert ("the whole table, mm" in {ax.get_title("left") for ax in shown.axes}) != is_whole
