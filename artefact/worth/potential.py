@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
+from scipy.linalg import block_diag
 
 from matstd.twin.frames import Array
 from matstd.twin.library import proposals
@@ -98,11 +99,7 @@ def potential(touches: Touches, reduced: Array, count: int) -> Potential:
         strongest = Vt[:1].T * np.sqrt(n / whole * np.sum(s**2)) / s[0]  # with the size of all
         mixes.append(strongest)
     sd = 1.0 / (MIN_VISIBLE_SHARE * np.sqrt(count))
-    mix = np.zeros((sum(len(m) for m in mixes), len(names)))
-    row = column = 0
-    for m in mixes:
-        mix[row : row + len(m), column : column + m.shape[1]] = sd * m
-        row, column = row + len(m), column + m.shape[1]
+    mix = sd * block_diag(np.zeros((0, 0)), *mixes)  # the empty one for no effects
     signatures = columns(effects, touches) @ mix
     length = np.maximum(np.linalg.norm(reduced, axis=0), 1e-300)
     imitation = np.linalg.lstsq(reduced / length, signatures, rcond=_RANK_TOLERANCE)[0]
