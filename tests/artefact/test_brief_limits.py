@@ -1,12 +1,13 @@
 """Limits of a project that no workshop can meet, beside those that one can."""
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from briefs import project_with
 
-from matstd.artefact.brief import read_project
+from matstd.artefact.brief import Brief, read_project
 from matstd.artefact.brief.contradictions import Faults, body_faults, material_faults
 from matstd.artefact.brief.standard_tables import BlankTable, LimitsTable, MaterialTable
 from matstd.cad_out.making.cutting import CUTTERS
@@ -127,3 +128,18 @@ def test_a_narrow_workspace_is_read(tmp_path, workspace):
 def test_figures_of_a_material_in_other_units_are_refused(tmp_path, material, words):
     with pytest.raises(BadFile, match=words):
         read_project(project_with(tmp_path, f"[material]\n{material}\n"))
+
+
+def test_a_brief_made_in_python_has_the_defaults_of_a_project_file(tmp_path):
+    read = read_project(project_with(tmp_path, ""))
+    made = Brief(read.chain)
+    for name in (
+        "probes", "table", "bodies", "ball", "overhang", "riser", "first_mode", "programs", "study",
+        "task", "down", "author", "organisation", "approved", "date", "remarks",
+    ):  # fmt: skip
+        assert getattr(made, name) == getattr(read, name), name
+    assert replace(made.options, name="FFS-1") == read.options
+    assert (made.blank.base, made.blank.height) == (read.blank.base, read.blank.height)
+    assert replace(made.blank.limits, table_radius=190.0) == read.blank.limits
+    assert replace(made.blank.fittings, highest_sphere=130.0) == read.blank.fittings
+    assert made.population.model.names == read.population.model.names
