@@ -33,7 +33,16 @@ from matstd.artefact.layout import (
 from matstd.artefact.price import prices_of
 from matstd.artefact.reach import clearance, joined
 from matstd.artefact.tool import Probe, solid_hull, swing_height, top_height
-from matstd.artefact.worth import random_touches, touch_curve, visibility
+from matstd.artefact.worth import (
+    CriterionOptions,
+    criterion_for,
+    random_touches,
+    touch_curve,
+    visibility,
+)
+from matstd.artefact.worth.touch_criterion import CRITERIA
+from matstd.sensitivity.first_order import Workspace
+from matstd.sensitivity.population import Population
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 BALL = 3.0
@@ -120,6 +129,26 @@ def test_what_touches_show_is_what_it_was(criterion, upright, touches, unchanged
     curve = touch_curve(criterion, "", touches, counts=(20, 60))
     shown = library.effects, library.shown(criterion, joined([touches, tried]))
     unchanged(facts((scan.u, power, some, shown, rows, curve, at)))
+
+
+def test_criteria_are_what_they_were(criterion, touches, unchanged) -> None:
+    """What touches are worth by every criterion, with potential effects, on drawn machines."""
+    reach, noise, population = criterion.reach, criterion.noise, Population(criterion.reach.chain)
+    limits = {"X": (-100.0, 100.0), "Y": (-100.0, 100.0), "Z": (-250.0, -50.0)}
+    area, lines = Workspace(reach.chain, limits, 160.0), []
+    for name in CRITERIA:
+        options = CriterionOptions(name, 0.3, 4, 0.5)
+        made = criterion_for(
+            reach, criterion.model, Blank(), area, noise, np.random.default_rng(4), options, 60,
+            population,
+        )  # fmt: skip
+        rows, terms = made.rows(touches), made.potential
+        value = made.objective.value(rows.T @ rows)
+        # a term has either sign
+        signless = np.abs(rows), np.abs(terms.mix), np.abs(terms.imitation)
+        lines.append(facts((name, value, len(terms), signless, made.tip_user)))
+    lines.append(" ".join(terms.names))
+    unchanged("\n".join(lines))
 
 
 def test_what_is_identifiable_is_what_it_was(criterion, touches, unchanged) -> None:
