@@ -112,7 +112,7 @@ def _basis(patch: FreeformPatch, uv: Array, over: Array | None = None) -> csr_ar
     poles = i[:, :, None] * patch.heights.shape[1] + j[:, None, :]
     places = np.arange(len(uv) + 1) * values[0].size
     shape = len(uv), patch.heights.size
-    return csr_array((values.reshape(-1), poles.reshape(-1), places), shape=shape)
+    return csr_array((values.ravel(), poles.ravel(), places), shape=shape)
 
 
 def _splines(patch: FreeformPatch, k: int, x: Array, order: int = 0) -> Array:

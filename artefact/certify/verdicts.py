@@ -96,12 +96,12 @@ class _Frame:
         assert known is not None
         floor = min(known.features[name].u for name in self.names)
         J = _rigid(self.places - self.middle)
-        scatter = _scatter(J, off.reshape(-1), floor)
+        scatter = _scatter(J, off.ravel(), floor)
         self.covariance = scatter**2 * np.linalg.inv(J.T @ J)
-        S = np.column_stack([J, (self.places - self.middle).reshape(-1)])
-        fitted = np.linalg.lstsq(S, off.reshape(-1), rcond=None)[0]
+        S = np.column_stack([J, (self.places - self.middle).ravel()])
+        fitted = np.linalg.lstsq(S, off.ravel(), rcond=None)[0]
         self.ppm = float(fitted[6])
-        scatter = _scatter(S, off.reshape(-1) - S @ fitted, floor)
+        scatter = _scatter(S, off.ravel() - S @ fitted, floor)
         self.u_ppm = scatter * float(np.sqrt(np.linalg.inv(S.T @ S)[6, 6]))
 
     def u(self, points: Array, directions: Array | None = None) -> float:

@@ -216,7 +216,7 @@ def holes_on(
         good &= apart >= _widest_radius(ball) + fit.bore_radius + _HOLE_GAP
     for face in faces:
         good &= _distance_to_pillar([face], places)[:, 0] >= fit.bore_radius + _HOLE_GAP
-    mirrored = good.reshape(len(xs), -1)[::-1].reshape(-1)
+    mirrored = good.reshape(len(xs), -1)[::-1].ravel()
     pair, third = places[good & mirrored & (places[:, 0] > 0.0)], places[good]
     legs = [np.linalg.norm(pair[:, None] * [s, 1.0] - third, axis=-1) for s in (-1.0, 1.0)]
     least = np.minimum(np.minimum(*legs), 2.0 * pair[:, :1])

@@ -40,7 +40,7 @@ def proving_touches(
 ) -> Requests:
     """Touches that cover the faces evenly, at the best table poses; raises NotReachable."""
     _check_enough(tried, count)
-    place = np.unique(tried.point, axis=0, return_inverse=True)[1].reshape(-1)
+    place = np.unique(tried.point, axis=0, return_inverse=True)[1].ravel()
     kept = np.isin(place, _even_places(standard, tried, place, count))
     tried, place = tried[kept], np.unique(place[kept], return_inverse=True)[1]
     selection, given = _selection_after(criterion, tried, identifying)

@@ -101,7 +101,7 @@ def showing_on_body(
             )
         u = np.hypot(criterion.noise, criterion.calibration.form)
         may = replace(may, u=np.full(len(tried), u))
-        at, area = at.reshape(-1), square_of(standard.patches[0], point)
+        at, area = at.ravel(), square_of(standard.patches[0], point)
     else:
         at, area = np.arange(len(tried)), np.unique(tried.feature, return_inverse=True)[1]
     return tried[showing_touches(criterion, given, may, effects_at, count, at, area)]
@@ -113,4 +113,4 @@ def square_of(face: FreeformPatch, point: Array) -> IntArray:
     half = np.array(face.half_size)
     count = np.maximum(1, np.round(2.0 * half / SQUARE_SIDE)).astype(np.int64)
     cell = np.clip(0.5 * (local / half + 1.0) * count, 0, count - 1).astype(np.int64)
-    return np.asarray(np.unique(cell @ [count[1], 1], return_inverse=True)[1].reshape(-1))
+    return np.asarray(np.unique(cell @ [count[1], 1], return_inverse=True)[1].ravel())

@@ -48,7 +48,7 @@ class Requests:
     @property
     def pose(self) -> IntArray:
         """Number of the table pose of every touch, (N,), from 0 in the order of the readings."""
-        return np.unique(np.round(self.rotary, 9), axis=0, return_inverse=True)[1].reshape(-1)
+        return np.unique(np.round(self.rotary, 9), axis=0, return_inverse=True)[1].ravel()
 
 
 def joined(parts: list[Requests]) -> Requests:

@@ -159,7 +159,7 @@ def chosen_poses(
     seen, group = np.unique(np.round(tried.rotary, 9), axis=0, return_inverse=True)
     take = max(4, options.touches // options.poses)
     chosen = best_groups(
-        criterion.objective, criterion.rows(tried), group.reshape(-1), options.poses, take
+        criterion.objective, criterion.rows(tried), group.ravel(), options.poses, take
     )
     return seen[sorted(chosen)]
 

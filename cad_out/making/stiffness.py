@@ -86,14 +86,14 @@ def stiffness_of(standard: Standard, details: Details, side: float = 10.0) -> St
     places = nodes * side + _origin(standard)
     freedom = (3 * index[:, :, None] + np.arange(3)).reshape(len(index), 24)
     K_cube = cube(side, modulus, poisson)
-    rows = np.repeat(freedom, 24, axis=1).reshape(-1)
-    columns = np.tile(freedom, (1, 24)).reshape(-1)
-    values = (share[:, None] * K_cube.reshape(1, -1)).reshape(-1)
+    rows = np.repeat(freedom, 24, axis=1).ravel()
+    columns = np.tile(freedom, (1, 24)).ravel()
+    values = (share[:, None] * K_cube.reshape(1, -1)).ravel()
     balls = standard.spheres
     size = 3 * (len(nodes) + len(balls))
     mass = np.zeros(size)
     one = standard.material.density * side**3 / 8.0
-    np.add.at(mass, freedom.reshape(-1), np.repeat(share * one, 24))
+    np.add.at(mass, freedom.ravel(), np.repeat(share * one, 24))
     extra = [
         _post_springs(ball, 3 * (len(nodes) + k), places, standard, side)
         for k, ball in enumerate(balls)
@@ -105,9 +105,7 @@ def stiffness_of(standard: Standard, details: Details, side: float = 10.0) -> St
     ends = [e for e, _ in extra]
     rows = np.concatenate([rows, *[np.repeat(e, len(e)) for e in ends], held])
     columns = np.concatenate([columns, *[np.tile(e, len(e)) for e in ends], held])
-    values = np.concatenate(
-        [values, *[K.reshape(-1) for _, K in extra], np.full(len(held), _STIFF)]
-    )
+    values = np.concatenate([values, *[K.ravel() for _, K in extra], np.full(len(held), _STIFF)])
     K = csc_array(coo_array((values, (rows, columns)), shape=(size, size)))
     factor = splu(K, permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
     solve = LinearOperator((size, size), matvec=factor.solve)
@@ -191,7 +189,7 @@ def _post_springs(
     across = cantilever_stiffness(length, ball.stem_radius, ball.foot_radius, modulus, poisson)
     along = modulus * np.pi * ball.stem_radius * ball.foot_radius / length
     apart = np.hstack([np.eye(3), -carried])
-    freedom = np.concatenate([tip + np.arange(3), (3 * near[:, None] + np.arange(3)).reshape(-1)])
+    freedom = np.concatenate([tip + np.arange(3), (3 * near[:, None] + np.arange(3)).ravel()])
     return freedom, apart.T @ np.diag([across, across, along]) @ apart
 
 
@@ -206,7 +204,7 @@ def _screw_dofs(standard: Standard, details: Details, places: Array, side: float
         inside = low[off <= max(radius, np.partition(off, 3)[3])]
         chosen.append(inside)
     nodes = np.unique(np.concatenate(chosen)) if chosen else low
-    return (3 * nodes[:, None] + np.arange(3)).reshape(-1)
+    return (3 * nodes[:, None] + np.arange(3)).ravel()
 
 
 def _at_features(standard: Standard, places: Array, moved: Array) -> dict[str, Array]:

@@ -23,7 +23,7 @@ def cells(quotas: tuple[Quota, ...], count: int) -> IntArray:
     if not quotas:
         return np.zeros(count, dtype=np.int64)
     kinds = np.stack([q.kind for q in quotas], axis=1)
-    return np.unique(kinds, axis=0, return_inverse=True)[1].reshape(-1)
+    return np.unique(kinds, axis=0, return_inverse=True)[1].ravel()
 
 
 def largest_sum(gain: Array, count: int, quotas: tuple[Quota, ...] = ()) -> Sum:

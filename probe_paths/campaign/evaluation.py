@@ -173,7 +173,7 @@ def _pose_labels(parts: Sequence[LogPart], setup: IntArray) -> IntArray:
     own, count = [families.index(_probe_prefix(p)) for p in parts], [len(p.number) for p in parts]
     number = np.concatenate([part.pose for part in parts])
     visited = np.column_stack([setup, np.repeat(own, count), number])
-    return np.unique(visited, axis=0, return_inverse=True)[1].reshape(-1).astype(np.int64)
+    return np.unique(visited, axis=0, return_inverse=True)[1].ravel().astype(np.int64)
 
 
 def _check_calibrations(parts: Sequence[LogPart]) -> None:

@@ -141,7 +141,7 @@ def _cell(i: int, j: int, uv: Array, height: Array, floor: float) -> Hulls:
     top = corners + float((lid - flat).max()) + _MAX_RISE_BETWEEN
     outline = uv[mine][np.ix_([0, -1], [0, -1])].reshape(-1, 2)
     low = np.column_stack([outline, np.full(4, floor)])
-    high = np.column_stack([outline, top.reshape(-1)])
+    high = np.column_stack([outline, top.ravel()])
     return _hull(np.concatenate([low, high]), [0.0] * CORNERS)
 
 

@@ -105,7 +105,7 @@ def _gaps_to(
 ) -> Array:
     """Gaps of M moves from some bodies, over all pieces of the tool, (M, rows), mm."""
     centre, axis, way = place
-    move, piece, body = (i.reshape(-1) for i in np.indices((len(centre), len(tool), len(rows))))
+    move, piece, body = (i.ravel() for i in np.indices((len(centre), len(tool), len(rows))))
     if spared is not None:
         keep = ~spared[move, body]
         move, piece, body = move[keep], piece[keep], body[keep]

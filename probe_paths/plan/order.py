@@ -53,7 +53,7 @@ def stated_visits(
     out = []
     for number in np.unique(stated.number):
         rows = np.flatnonzero(stated.number == number)
-        pose, side = int(belongs.reshape(-1)[rows[0]]), stated.side[rows[0]]
+        pose, side = int(belongs.ravel()[rows[0]]), stated.side[rows[0]]
         made = _visit(chain, pose, poses[pose], side, overshoot, rows)
         out.append(replace(made, stretch=int(stated.stretch[rows[0]])))
     return out
@@ -79,7 +79,7 @@ def visits(chain: Chain, rotary: Array, overshoot: float, shortest_visit: int) -
     first: list[Visit] = []
     second: list[Visit] = []
     for turn, pose in enumerate(order):
-        rows = np.flatnonzero(belongs.reshape(-1) == pose)
+        rows = np.flatnonzero(belongs.ravel() == pose)
         wanted = np.array([1.0 if (turn >> axis) & 1 else -1.0 for axis in range(rotary.shape[1])])
         halves = [rows[::2], rows[1::2]] if len(rows) >= shortest_visit else [rows]
         for half, target, sign in zip(halves, (first, second), (1.0, -1.0), strict=False):

@@ -237,7 +237,7 @@ def _touches(
     """The record of all points."""
     count = len(points)
     poses = points.q[:, chain.rotary_columns]
-    label = np.unique(np.round(poses, 6), axis=0, return_inverse=True)[1].reshape(-1)
+    label = np.unique(np.round(poses, 6), axis=0, return_inverse=True)[1].ravel()
     return replace(
         at_poses(chain, points.q, probe[1]),
         radius=np.full(count, probe[0]),
