@@ -13,7 +13,7 @@ import pytest
 import rs274
 from browser import faults, opened, requests
 from figures import render_alone
-from unchanged import Unchanged, folded, page_text
+from unchanged import Unchanged, facts, folded, page_text
 
 from matstd.artefact.body import Limits, read_standard
 from matstd.artefact.brief import Brief, PlacementOptions, project_file, read_project
@@ -400,7 +400,7 @@ def test_bad_project(
     [("groups", "stylus|body"), ("correlation", "model"), ("groups", "stack")],
 )
 def test_what_the_example_only_mentions_is_accepted(
-    tmp_path: Path, relation: str, shape: str
+    tmp_path: Path, relation: str, shape: str, unchanged: Unchanged
 ) -> None:
     """Every commented key, but of groups and correlations, and of probe shapes, one alone."""
     path = small_project(tmp_path)
@@ -415,6 +415,9 @@ def test_what_the_example_only_mentions_is_accepted(
     chain = project.chain
     assert project.population.mix_of(chain.symbol("EXX")).shapes == ("linear", "sinusoidal")
     assert project.population.ranges.of(chain, chain.symbol("EXC")) == (5.0 * UM, 10.0 * UM)
+    named = ("probes", "options", "programs", "study", "task", "blank", "ball", "author", "riser")
+    told = {name: getattr(project, name) for name in named}
+    unchanged(facts((told, project.population.dependence, project.clampings)))
 
 
 def test_blank_and_limits_reach_the_placement(tmp_path: Path) -> None:

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import trimesh
 from formats import write_examples
+from unchanged import facts
 
 from matstd.artefact.body import Base, DatumSphere, Standard
 from matstd.artefact.body.material import STEEL
@@ -42,7 +43,7 @@ def project(folder, old="", new=""):
     return read_project(path)
 
 
-def test_the_example_of_the_page_reaches_planner_programs_and_placement(tmp_path):
+def test_the_example_of_the_page_reaches_planner_programs_and_placement(tmp_path, unchanged):
     made = project(tmp_path)
     tool, room = made.probe, made.reach.workshop
     assert tool.stack == ((32.0, 2.0), (50.0, 4.0), (100.0, 20.0), (160.0, 20.0))
@@ -56,6 +57,7 @@ def test_the_example_of_the_page_reaches_planner_programs_and_placement(tmp_path
     assert (words.tool, words.preset) == (12, 3)
     assert words.on_control("A.H") == "TNC:\\STANDARD\\A.H"
     assert feeds_of(made).probing == 250.0
+    unchanged(facts((made.programs, made.clampings, plan_options_of(made), words, feeds_of(made))))
 
 
 def test_every_model_of_the_library_is_a_probe(tmp_path):
@@ -157,7 +159,7 @@ def test_what_a_clamp_is_in_the_way_of_is_not_chosen(tmp_path):
         assert is_free or "WALL" in reason
 
 
-def test_boxes_cover_a_mesh_and_not_much_else(tmp_path):
+def test_boxes_cover_a_mesh_and_not_much_else(tmp_path, unchanged):
     """An L of two bars, turned: 20 000 points of its surface are in the boxes, its notch is not."""
     bars = [
         trimesh.creation.box((80.0, 20.0, 15.0), pose(t=np.array([40.0, 10.0, 7.5]))),
@@ -176,6 +178,7 @@ def test_boxes_cover_a_mesh_and_not_much_else(tmp_path):
     notch = apply(place, np.array([[60.0, 50.0, 7.5], [30.0, 30.0, 10.0], [50.0, 10.0, 30.0]]))
     outside = [s.plate.distance(apply(inverse(s.T_face_solid), notch)) for s in solids]
     assert np.min(outside, axis=0).min() > 4.0
+    unchanged(facts(solids))
 
 
 @pytest.mark.parametrize(
