@@ -3,12 +3,25 @@
 import json
 import re
 import zipfile
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
-from unchanged import Unchanged, folded, summary
+from unchanged import Unchanged, facts, folded, summary
 
+from matstd.artefact.body import Base
+from matstd.cad_out.details import (
+    annotations_of,
+    datum_touches,
+    details_of,
+    engraved_on,
+    notes_of,
+    tolerances_of,
+)
+from matstd.cad_out.making import joints_of, stiffness_of
+from matstd.cad_out.making.cutting import cutting_of
+from matstd.cad_out.making.hints import hints_of
 from matstd.cad_out.meshes import mesh_volume
 from matstd.cad_out.verify.conformity import write_conformity
 from matstd.twin.sampling import grid_points
@@ -94,3 +107,18 @@ def test_figures_and_triangles_are_what_they_were(built, tmp_path, unchanged: Un
         corners = mesh.corners[mesh.triangles[mesh.owner == name]]
         lines.append(f"'{name}' {summary(corners[..., 0])} {summary(corners[..., 1:])}")
     unchanged("\n".join(lines))
+
+
+@pytest.mark.parametrize("name", ["standard", "upright", "on a disc"])
+def test_details_and_making_are_what_they_were(request, name: str, unchanged: Unchanged) -> None:
+    """Bores, pads, seats, letters, signs and notes; cutters, hints, stiffness, joints."""
+    made = request.getfixturevalue("upright" if name == "on a disc" else name)
+    if name == "on a disc":
+        made = replace(made, base=Base((100.0, 100.0), 100.0, 28.0))
+    details = details_of(made)
+    drawn = tolerances_of(made, details), notes_of(made, details), annotations_of(made, details)
+    lines = [facts((details, drawn, datum_touches(made), engraved_on(made)[::7]))]
+    if name != "standard":  # its faces lean
+        cut = cutting_of(made, details), hints_of(made), stiffness_of(made, details, 25.0)
+        lines.append(facts((cut, joints_of(made, details))))
+    unchanged(folded("\n".join(lines)))
