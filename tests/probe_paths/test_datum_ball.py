@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from briefs import project_with
 from programs import as_read, left_log
+from unchanged import facts, folded
 
 from matstd.artefact.brief import read_project
 from matstd.artefact.reach import DatumBall, Workshop
@@ -89,6 +90,10 @@ def test_it_does_not_mind_where_the_standard_stands(logged, small, chain):
 def measuring(beside, chain):
     made = make_programs(beside)
     return as_read(made, chain), made.programs[0].text
+
+
+def test_program_and_log_of_the_ball_are_what_they_were(made, program, logged, unchanged):
+    unchanged("\n".join([folded(made.programs[0].text), folded(facts((program.steps, logged())))]))
 
 
 def test_programs_that_measure_keep_clear_of_it(measuring, small, chain):

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from programs import as_read, parts_of, ran
+from unchanged import facts, folded
 
 from matstd.artefact.body import write_standard
 from matstd.cli import main
@@ -40,6 +41,14 @@ def reads(made, small, chain):
 @pytest.fixture(scope="module")
 def program(made, reads):
     return reads(made.programs[0].text)
+
+
+def test_the_program_is_what_it_was(made, program, unchanged):
+    unchanged(
+        "\n".join(
+            [folded(made.programs[0].text), folded(facts((program.heading.stack, program.steps)))]
+        )
+    )
 
 
 def test_it_has_less_than_a_hundred_blocks_a_touch_in_the_air_and_one_on_a_ball(made, program):

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from programs import as_read, parts_of, ran
 from scipy.spatial.transform import Rotation
+from unchanged import facts, folded
 
 from matstd.artefact.brief import read_project
 from matstd.artefact.tool import Probe
@@ -38,6 +39,10 @@ def made(plan):
 def both(made, plan, chain):
     flat = make_programs(plan, Dialect())
     return as_read(made, chain), as_read(flat, chain)
+
+
+def test_programs_in_planes_are_what_they_were(made, both, unchanged):
+    unchanged("\n".join([folded(made.programs[0].text), folded(facts(both[0].steps))]))
 
 
 def test_axes_end_where_programs_without_planes_end(both):

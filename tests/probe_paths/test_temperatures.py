@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from briefs import project_with
 from programs import as_read, ran
+from unchanged import folded
 
 from matstd.artefact.brief import read_project
 from matstd.probe_paths.campaign import VirtualMachine, evaluate
@@ -40,6 +41,10 @@ def log(made, plan):
     run = ran(as_read(made, plan.chain), plan.standard, machine, seed=1)
     ((_, text),) = run.log.items()
     return text, run.time[np.isfinite(run.time)]
+
+
+def test_the_log_is_what_it_was(log, unchanged):
+    unchanged(folded(log[0]))
 
 
 def test_the_log_prints_what_the_plc_hands_over(log):
