@@ -44,11 +44,7 @@ def program(made, reads):
 
 
 def test_the_program_is_what_it_was(made, program, unchanged):
-    unchanged(
-        "\n".join(
-            [folded(made.programs[0].text), folded(facts((program.heading.stack, program.steps)))]
-        )
-    )
+    unchanged("\n".join([folded(made.programs[0].text), folded(facts(program.steps))]))
 
 
 def test_it_has_less_than_a_hundred_blocks_a_touch_in_the_air_and_one_on_a_ball(made, program):
