@@ -3,6 +3,7 @@
 import re
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,7 +14,7 @@ from matstd.artefact.body.spline import greville
 from matstd.artefact.certify import fit_calibration, read_cmm_points
 from matstd.artefact.certify.calibration_fit import fitted_ball, measured_balls
 from matstd.artefact.certify.cmm_points_file import CmmPoints
-from matstd.artefact.certify.cmm_stylus import TIP, TO_PIVOT, Angle, reaches
+from matstd.artefact.certify.cmm_stylus import TIP, TO_PIVOT, Angle, choose_stylus, reaches
 from matstd.artefact.certify.dmis import APPROACH
 from matstd.artefact.tool import Probe
 from matstd.artefact.worth import Calibration
@@ -401,6 +402,50 @@ def test_a_head_stands_on_the_side_that_its_angles_say(nominal) -> None:
     high = 300.0 + TO_PIVOT
     assert reaches(nominal, pole, high, 50.0, Angle(0.0, 0.0)).all()
     assert not reaches(nominal, foot[None], high, 50.0, Angle(0.0, 0.0)).any()  # under the ball
+
+
+def wall(x: float, low: float, high: float) -> SimpleNamespace:
+    """A body with one side, at x between two heights."""
+
+    def distance(places):
+        z = places[..., 2]
+        return np.where((low < z) & (z < high), x - places[..., 0], 1e3)
+
+    return SimpleNamespace(distance=distance)
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "least"),
+    [
+        (16.0, 58.0, 2.0),  # shaft of 1 mm and a gap of 1 mm
+        (61.0, 109.0, 8.0),  # module of 7 mm
+        (112.0, 228.0, 37.0),  # head of 32 mm and a gap of 5 mm
+    ],
+)
+def test_the_room_of_shaft_module_and_head_by_hand(low: float, high: float, least: float) -> None:
+    """A stylus of 50 mm upright on a ball at z = 10: its module ends at 110, its head at 230."""
+    at, upright = np.array([[0.0, 0.0, 10.0]]), Angle(0.0, 0.0)
+    assert reaches(wall(least + 0.05, low, high), at, 300.0, 50.0, upright).all()
+    assert not reaches(wall(least - 0.05, low, high), at, 300.0, 50.0, upright).any()
+
+
+def test_a_head_that_lies_stays_above_the_table() -> None:
+    """Its radius is 32 mm; on the way down from 60 mm there is room."""
+    for z, is_free in ((32.1, True), (31.9, False)):
+        at = np.array([[0.0, 0.0, z]])
+        assert reaches(wall(1e3, 0.0, 1.0), at, 60.0, 50.0, Angle(90.0, 0.0)).all() == is_free
+
+
+def test_the_least_tilt_that_keeps_clear_of_a_wall_by_hand() -> None:
+    """Of a wall 5 mm beside the ball: upright and at 15 degrees the head is too near (5 + 100
+    sin 15 = 31 of 37 mm). At 30 degrees the first turn is B = 45: 5 + 100 sin 30 sin 45 = 40."""
+    centres = np.array([[0.0, 0.0, 40.0], [0.0, 9.0, 40.0], [-60.0, 0.0, 40.0]])
+    one, each = (
+        choose_stylus(wall(5.0, 0.0, 400.0), {"A": (centres, is_one)}, 41.0)
+        for is_one in (True, False)
+    )
+    assert one == (50.0, {"A": [Angle(30.0, 45.0)] * 3})
+    assert each == (50.0, {"A": [Angle(30.0, 45.0)] * 2 + [Angle(0.0, 0.0)]})
 
 
 def test_the_piece_is_probed_and_the_design_believed(golden, nominal, found, tmp_path) -> None:
