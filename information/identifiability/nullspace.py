@@ -17,7 +17,7 @@ from functools import cached_property
 import numpy as np
 from scipy.sparse.csgraph import connected_components
 
-from matstd.twin.frames import Array
+from matstd.twin.frames import Array, Mask
 
 MIN_SINGULAR_RATIO = 1e-8
 """Singular value over the largest, columns of length one, below which a direction is invisible: far
@@ -38,8 +38,7 @@ class RankAnalysis:
     @property
     def rank(self) -> int:
         """Number of independent combinations that the rows see."""
-        least = MIN_SINGULAR_RATIO * max(float(self.singular.max()), 1e-300)
-        return int(np.sum(self.singular > least))
+        return int(np.sum(self.singular > MIN_SINGULAR_RATIO * self.singular.max()))
 
     @property
     def condition(self) -> float:
@@ -50,16 +49,19 @@ class RankAnalysis:
     def null(self) -> Array:
         """Directions that no row sees, weights of the parameters as they stand in W, (G, P)."""
         rows = self.directions[self.rank :]
-        loud = self.length > MIN_LENGTH_RATIO * max(float(self.length.max(initial=0.0)), 1e-300)
-        return rows / np.where(loud, self.length, 1.0)
+        return rows / np.where(_is_loud(self.length), self.length, 1.0)
+
+
+def _is_loud(length: Array) -> Mask:
+    """Columns of some lengths that move anything, (P,)."""
+    return np.asarray(length > MIN_LENGTH_RATIO * length.max(initial=0.0))
 
 
 def rank_analysis(W: Array) -> RankAnalysis:
     """Rank, singular values and directions of rows (N, P)."""
     P = W.shape[1]
     length = np.linalg.norm(W, axis=0)
-    loud = np.flatnonzero(length > MIN_LENGTH_RATIO * max(float(length.max(initial=0.0)), 1e-300))
-    silent = np.setdiff1d(np.arange(P), loud)
+    loud, silent = np.flatnonzero(_is_loud(length)), np.flatnonzero(~_is_loud(length))
     singular, directions = np.zeros(P), np.zeros((P, P))
     if len(loud):
         _, s, Vt = np.linalg.svd(np.linalg.qr(W[:, loud] / length[loud], mode="r"))
