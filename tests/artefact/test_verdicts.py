@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import BSpline
 from scipy.spatial.transform import Rotation
+from unchanged import facts, folded
 
 from matstd.artefact.body import Known, Verdict, read_standard
 from matstd.cli import main
@@ -88,7 +89,7 @@ def by_name(path: Path) -> dict[str, Verdict]:
     return {f"{v.feature} {v.characteristic}": v for v in known.verdicts}
 
 
-def test_a_piece_as_drawn_conforms(seven_balls, drawn, capsys):
+def test_a_piece_as_drawn_conforms(seven_balls, drawn, capsys, unchanged):
     code, out = calibrate(drawn, measured(drawn))
     assert code == 0
     found = by_name(out)
@@ -102,6 +103,7 @@ def test_a_piece_as_drawn_conforms(seven_balls, drawn, capsys):
     assert len(re.findall(r"profile .* 25\.00 .* conforming", table)) == 2
     assert len(re.findall(r"diameter .* ±2\.50 .* conforming", table)) == 7
     assert read_standard(out).known.accepted == ()
+    unchanged(table.replace(str(drawn.parent), ""))
 
 
 @pytest.mark.parametrize(
@@ -206,12 +208,13 @@ def test_what_lies_within_the_guard_band_cannot_be_decided(drawn, capsys):
     assert by_name(out)["SPH1 diameter"].state == "conforming"
 
 
-def test_balls_within_their_drawing_hide_a_scale(drawn, capsys):
+def test_balls_within_their_drawing_hide_a_scale(drawn, unchanged):
     """Places that scatter by 20 µm, of 100 allowed, leave a scale open that 20 ppm lie within."""
     rng = np.random.default_rng(4)
     beside = {f"SPH{i}": 0.02 * rng.normal(size=3) for i in range(1, 8)}
     code, out = calibrate(drawn, measured(drawn, beside=beside, scale=20e-6))
     assert code == 0
+    unchanged(folded(facts(by_name(out))))
     found = {name: v.state for name, v in by_name(out).items()}
     assert [state for name, state in found.items() if "scale" in name] == ["cannot be decided"]
     assert not [name for name, state in found.items() if state == "not conforming"]

@@ -51,7 +51,7 @@ def test_its_files_are_what_they_were(written, unchanged):
 
 
 def test_its_maps_are_what_they_were(written, figures, unchanged):
-    unchanged("\n".join(f"{name}: {figures[name]}" for name in sorted(figures)))
+    unchanged(folded("\n".join(f"{name}: {figures[name]}" for name in sorted(figures))))
 
 
 def test_the_same_seed_gives_the_same_study(chain, workspace, study):
