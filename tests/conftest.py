@@ -44,7 +44,7 @@ LONGEST = (
     "report/test_live_page.py",
     "diagnosis/test_hidden_effects.py",
     "diagnosis/test_several_runs.py",
-    "cad_out/test_assembly.py",
+    "cad_out/test_files_stay.py",
     "diagnosis/test_files_and_commands.py",
     "diagnosis/test_reported_set.py",
     "probe_paths/test_simulate.py",

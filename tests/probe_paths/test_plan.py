@@ -48,8 +48,11 @@ def test_every_request_is_touched_once_or_refused(plan, golden):
     assert len(refused) == 2
 
 
-def test_the_plan_is_what_it_was(plan, unchanged):
-    unchanged(facts(plan))
+def test_the_plan_is_what_it_was(golden, small, chain, unchanged):
+    """Made here, so that coverage.py knows which test executes its lines."""
+    options = PlanOptions(tolerated=2)
+    wanted = golden.requests(small)
+    unchanged(facts(plan_touches(small, chain, Probe(), golden.setup(), wanted, options)))
 
 
 def test_an_anchor_sphere_is_touched_first_on_every_visit_at_the_same_point(plan):
