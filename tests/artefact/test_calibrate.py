@@ -267,8 +267,11 @@ def test_points_that_do_not_do(nominal, tmp_path, spoil, expected) -> None:
 
 
 def test_balls_that_the_cmm_has_evaluated_state_their_diameter(nominal, tmp_path) -> None:
-    """A row a ball: its centre in mm, its diameter in inches."""
-    rows = [(s.name, *s.centre, 2.0 * s.radius / 25.4) for s in nominal.spheres]
+    """Four rows a ball: its centre in mm, its diameter in inches. A mean of four has u/2."""
+    off = np.array([-3.0, -1.0, 1.0, 3.0]) * UM
+    rows = [
+        (s.name, *(s.centre + d), 2.0 * (s.radius + d) / 25.4) for s in nominal.spheres for d in off
+    ]
     lines = ["feature,x [mm],y [mm],z [mm],diameter [in]", *(",".join(map(str, r)) for r in rows)]
     (tmp_path / "cmm.csv").write_text("\n".join(lines) + "\n")
     cmm = read_cmm_points(tmp_path / "cmm.csv", nominal)
@@ -276,6 +279,9 @@ def test_balls_that_the_cmm_has_evaluated_state_their_diameter(nominal, tmp_path
         known = nominal.features[name]
         assert ball.radius == pytest.approx(known.radius)
         assert ball.centre == pytest.approx(known.centre)
+        assert (ball.points, ball.left) == (4, 0.0)
+        assert np.sqrt(np.diag(ball.covariance)) == pytest.approx(np.full(3, 0.5 * NOISE))
+        assert ball.u_radius == pytest.approx(0.25 * NOISE)
 
 
 def test_units_and_stamps(nominal, tmp_path, capsys) -> None:
