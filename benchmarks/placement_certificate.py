@@ -82,7 +82,7 @@ def _designs(chain: Chain, model: Model) -> list[Result]:
     for name in ("I", "D"):
         objective = criterion.objectives[name]
         start, cpu = time.perf_counter(), time.process_time()
-        best = relaxed(objective, W, TOUCHES, heaviest(rng.random(len(W)), TOUCHES))
+        best = relaxed(objective, W, TOUCHES, heaviest(rng.random(len(W)), TOUCHES), 2e-3)
         middle = time.perf_counter()
         whole = rounded(objective, W, best.weight, TOUCHES)
         end = time.perf_counter()

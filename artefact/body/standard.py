@@ -272,6 +272,6 @@ class Standard(Displayed):
         )
         return float(filled - bored)
 
-    def mass(self, step: float = 4.0) -> float:
+    def mass(self, step: float) -> float:
         """Estimate of the mass, kg."""
         return self.material.density * self.volume(step)

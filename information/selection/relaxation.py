@@ -92,7 +92,7 @@ def relaxed(
     W: Array,
     count: int,
     start: Mask,
-    tolerance: float = 2e-3,
+    tolerance: float,
     quotas: tuple[Quota, ...] = (),
 ) -> Relaxed:
     """Nearly the best fractions of touches, by vertex exchange on the candidates that matter.

@@ -125,7 +125,7 @@ def test_volume_estimate_against_closed_form(standard):
     exact = plate + 40.0 * 50.0 * 30.0 - holes + stems
     assert whole.volume(2.0) == pytest.approx(exact, rel=2e-3)
     assert whole.volume() == pytest.approx(exact, rel=1e-2)
-    assert whole.mass() == pytest.approx(whole.volume() * 7.8e-6, rel=1e-12)
+    assert whole.mass(4.0) == pytest.approx(whole.volume() * 7.8e-6, rel=1e-12)
 
 
 def _stem_in_ball(sphere):

@@ -99,11 +99,11 @@ def test_certified_efficiency_of_a_good_and_of_a_bad_choice(is_determinant):
     selection = Selection(criterion, W)
     fill(selection, 40)
     exchange(selection)
-    best = relaxed(criterion, W, 40, selection.chosen)
+    best = relaxed(criterion, W, 40, selection.chosen, 2e-3)
     good = Certificate(2000, 40, value_of(criterion, W, selection.chosen), best.bound, False)
     assert 0.97 < good.efficiency <= 1.0
     other = np.arange(2000) < 40
-    again = relaxed(criterion, W, 40, other)
+    again = relaxed(criterion, W, 40, other, 2e-3)
     assert again.bound == pytest.approx(best.bound, rel=5e-3)  # the same bound from another start
     assert Certificate(2000, 40, value_of(criterion, W, other), again.bound, False).efficiency < 0.6
     whole = rounded(criterion, W, best.weight, 40)
@@ -127,7 +127,7 @@ def test_determinant_by_updates_is_the_determinant():
 def test_a_start_of_another_size_is_refused():
     criterion, W = case(1, 10, 3, False)
     with pytest.raises(DesignError, match="4 of 10 touches to start from, 5 wanted"):
-        relaxed(criterion, W, 5, np.arange(10) < 4)
+        relaxed(criterion, W, 5, np.arange(10) < 4, 2e-3)
 
 
 def test_every_cell_keeps_its_best_candidates():
