@@ -45,6 +45,14 @@ def test_faults_of_seats_are_what_they_were(unchanged: Unchanged) -> None:
             said.append(refusal(with_table(there, **table)))
     for _ in range(25):
         said.append(refusal(with_bodies(project, placed(rng, np.eye(4)))))
+    for x in (100.0, 138.0, 144.0, 147.0, 400.0):
+        said.append(refusal(replace(project, ball=DatumBall(x, 9.0, 80.0, 12.5, 6.0, 0.0, 0.0))))
+    sunk = {"name": "CLAMP", "height_mm": 20.0, "sides_mm": [30.0, 20.0]}
+    for place in ([10.0, 150.0, -5.0], [10.0, 150.0, 0.05], [0.0, 135.0, 31.0]):
+        said.append(refusal(with_bodies(project, sunk | {"at_mm": place})))
+    for sides in ((320.0, 200.0), (300.0, 300.0)):
+        large = replace(project, blank=replace(project.blank, base=base_of(sides)), overhang=0.0)
+        said.append(refusal(with_table(large, diameter_mm=280.0)))
     said += [refusal(cradle_post(height)) for height in (160.0, 170.0, 180.0, 186.0)]
     unchanged(folded("\n".join(said)).replace(str(EXAMPLES), ""))
 
