@@ -37,7 +37,7 @@ def built():
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(ball_choice, "_PLACES", 30)
         patch.setattr(wavy_choice, "_RIMS", (42.0, 60.0))
-        patch.setattr(wavy_choice, "_WAVELENGTHS", (60.0, 80.0))
+        patch.setattr(wavy_choice, "_WAVELENGTHS", (60.0,))
         patch.setattr(comparison, "COUNTS", (4,))
         patch.setattr(comparison, "rivals", lambda *_: {})
         figures = families._figures
