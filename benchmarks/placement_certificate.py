@@ -16,7 +16,7 @@ from harness import matrix_rate
 
 from matstd.artefact.layout import Blank
 from matstd.artefact.reach import ProbeReach
-from matstd.artefact.worth import criterion_for, random_touches
+from matstd.artefact.worth import CriterionOptions, criterion_for, random_touches
 from matstd.information.selection import heaviest, relaxed, rounded
 from matstd.probe_paths.plan import Probe
 from matstd.sensitivity.first_order import Workspace
@@ -71,7 +71,17 @@ def _designs(chain: Chain, model: Model) -> list[Result]:
     probe, rng = Probe(), np.random.default_rng(1)
     reach = ProbeReach(chain, Setup("a"), probe.shape, probe.length)
     workspace = Workspace(chain, {}, probe.length)
-    criterion = criterion_for(reach, model, Blank(), workspace, 1.0 * UM, rng)
+    criterion = criterion_for(
+        reach,
+        model,
+        Blank(),
+        workspace,
+        1.0 * UM,
+        rng,
+        CriterionOptions(),
+        TOUCHES,
+        Population(chain),
+    )
     wanted = random_touches(reach, criterion.volume, criterion.rotary, CANDIDATES, rng)
     W = criterion.rows(wanted)
     print(

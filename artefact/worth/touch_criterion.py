@@ -169,9 +169,9 @@ def criterion_for(
     workspace: Workspace,
     noise: float,
     rng: np.random.Generator,
-    options: CriterionOptions | None = None,
-    touches: int = 480,
-    population: Population | None = None,
+    options: CriterionOptions,
+    touches: int,
+    population: Population,
 ) -> Criterion:
     """Criterion of a machine, a blank and a user's workspace.
 
@@ -180,11 +180,10 @@ def criterion_for(
         blank: Blank of the standard: it bounds the probed volume.
         workspace: Where the user works; the limits of its rotary axes are those of table poses.
         noise: Standard deviation of one touch, mm.
-        options: What touches are chosen for; None for the I-criterion alone.
-        population: From which machines are drawn, that of the model; None for the default one.
-
+        options: What touches are chosen for.
+        touches: Number of touches after which potential terms are judged.
+        population: From which machines are drawn, that of the model.
     """
-    options = options or CriterionOptions()
     volume = _probed_volume(blank)
     rotary = np.array([workspace.limit(n) for n in reach.chain.rotary_axes]).reshape(-1, 2)
     at = _poses_to_judge(reach, volume, workspace, rng)
@@ -247,7 +246,7 @@ def _with_potential_share(
 def _drawn_error_scales(
     reach: ProbeReach,
     model: Model,
-    population: Population | None,
+    population: Population,
     draws: int,
     rng: np.random.Generator,
 ) -> Array:
@@ -256,7 +255,6 @@ def _drawn_error_scales(
     Raises:
         DesignError: The model is not that of the population.
     """
-    population = population or Population(reach.chain)
     if not set(model.names) <= set(population.model.names):
         raise DesignError("machines can be drawn for the errors of a population alone")
     scale = drawn_scales(population, draws, rng, model)

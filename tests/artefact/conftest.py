@@ -5,7 +5,7 @@ import pytest
 
 from matstd.artefact.layout import Blank
 from matstd.artefact.reach import ProbeReach, ProbeShape
-from matstd.artefact.worth import criterion_for
+from matstd.artefact.worth import CriterionOptions, criterion_for
 from matstd.sensitivity.first_order import Workspace
 from matstd.sensitivity.population import Population
 from matstd.twin.machine import Axis, make_chain
@@ -23,5 +23,7 @@ def criterion():
     )
     limits = {"X": (-100.0, 100.0), "Y": (-100.0, 100.0), "Z": (-250.0, -50.0)}
     reach = ProbeReach(mill, Setup("a"), ProbeShape(3.0, ((80.0, 2.0), (160.0, 25.0))), 160.0)
-    model, area = Population(mill).model, Workspace(mill, limits, 160.0)
-    return criterion_for(reach, model, Blank(), area, 1.0 * UM, np.random.default_rng(4))
+    population, area = Population(mill), Workspace(mill, limits, 160.0)
+    wanted = CriterionOptions(), 480, population
+    rng = np.random.default_rng(4)
+    return criterion_for(reach, population.model, Blank(), area, 1.0 * UM, rng, *wanted)

@@ -17,7 +17,12 @@ from matstd.artefact.compare.alternatives import (
 from matstd.artefact.layout import Blank
 from matstd.artefact.reach import ProbeReach
 from matstd.artefact.tool import Probe
-from matstd.artefact.worth import criterion_for, random_touches, setup_parameters
+from matstd.artefact.worth import (
+    CriterionOptions,
+    criterion_for,
+    random_touches,
+    setup_parameters,
+)
 from matstd.information.identifiability import Resolution, combinations
 from matstd.report.identifiability import identifiability_table
 from matstd.sensitivity.first_order import Workspace
@@ -40,7 +45,9 @@ def criterion(chain):
     limits = {"B": (-90.0 * DEG, 20.0 * DEG), "C": (-180.0 * DEG, 180.0 * DEG)}
     workspace = Workspace(chain, limits, probe.length)
     rng = np.random.default_rng(3)
-    return criterion_for(reach, Population(chain).model, Blank(), workspace, 1.0 * UM, rng)
+    population = Population(chain)
+    wanted = CriterionOptions(), 480, population
+    return criterion_for(reach, population.model, Blank(), workspace, 1.0 * UM, rng, *wanted)
 
 
 @pytest.fixture(scope="module")

@@ -21,7 +21,13 @@ from matstd.artefact.hidden.touches_that_show import _Choice
 from matstd.artefact.layout import Blank, Wave, wavy_face
 from matstd.artefact.place.wavy_proof import showing_on_body, showing_table_poses, square_of
 from matstd.artefact.reach import ProbeReach, ProbeShape
-from matstd.artefact.worth import Calibration, criterion_for, each_at, face_grid
+from matstd.artefact.worth import (
+    Calibration,
+    CriterionOptions,
+    criterion_for,
+    each_at,
+    face_grid,
+)
 from matstd.artefact.worth.touch_choice import touches_at
 from matstd.sensitivity.first_order import Workspace
 from matstd.sensitivity.population import Population
@@ -102,8 +108,9 @@ def test_a_face_is_scanned_where_the_table_does_not_hide_it(scene):
     _, body, _, given, _ = scene
     chain = read_machine(MACHINE)
     reach = ProbeReach(chain, Setup("a"), ProbeShape(3.0, ((80.0, 2.0), (160.0, 25.0))), 160.0)
-    volume, model = Workspace(chain, {}, 160.0), Population(chain).model
-    here = criterion_for(reach, model, Blank(), volume, UM, np.random.default_rng(4)).on(body)
+    volume, population = Workspace(chain, {}, 160.0), Population(chain)
+    rng, wanted = np.random.default_rng(4), (CriterionOptions(), 480, population)
+    here = criterion_for(reach, population.model, Blank(), volume, UM, rng, *wanted).on(body)
     poses = np.column_stack([np.zeros(5), np.array([-90.0, -75.0, -20.0, 0.0, 10.0]) * DEG])
     given = touched(replace(given.touches, rotary=np.tile(poses[3], (len(given), 1))), UM)
     at = possible_places(reach, here.volume, poses, np.random.default_rng(1))
