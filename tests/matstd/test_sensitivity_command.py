@@ -1,13 +1,9 @@
 """`matstd sensitivity PROJECT.toml`: a whole study as a folder, and one line on bad input."""
 
-import csv
-import json
 from functools import partial
 from pathlib import Path
 
-import numpy as np
 import pytest
-from unchanged import folded
 
 from matstd.sensitivity import montecarlo
 
@@ -26,36 +22,6 @@ def project(tmp_path):
 
 def add(project, text):
     project.write_text(project.read_text(encoding="utf-8") + text, encoding="utf-8")
-
-
-def test_a_study_stands_in_a_folder_with_its_precision(
-    project, tmp_path, answer, monkeypatch, unchanged
-):
-    """Without its maps, which `tests/sensitivity/test_study.py` and `tests/report` draw."""
-    monkeypatch.setattr("matstd.stages.study_run.draw_maps", lambda *_: [])
-    monkeypatch.setattr("matstd.report.pages.study_page.draw_study_volumes", lambda *_: [])
-    add(project, '\n[[errors.groups]]\nnames = ["EXX", "-EYX"]\ncorrelation = 0.5\n')
-    add(project, '[errors.shapes]\nEXX = { shapes = ["parabolic"] }\n')
-    out = tmp_path / "out"
-    said = answer(["sensitivity", str(project), "-o", str(out), "--tolerance-um", "300"])
-    figures = json.loads((out / "montecarlo.json").read_text(encoding="utf-8"))
-    assert figures["draws"] == 300
-    assert figures["seed"] == "600/0.1"
-    assert figures["achieved_um"] > 0.0
-    assert figures["statement"] in said
-    page = (out / "report.html").read_text(encoding="utf-8")
-    assert figures["statement"] in page.replace(
-        "\u00a0", " "
-    )  # a page keeps number and unit together
-    with (out / "trajectory.csv").open(encoding="utf-8") as stream:
-        rows = list(csv.DictReader(stream))
-    assert {"X_mm", "p95_um", "exceedance", "errors_of_X_um", "errors_of_C_um"} <= set(rows[0])
-    assert np.ptp([float(r["B_deg"]) for r in rows]) == pytest.approx(110.0, abs=0.1)
-    for name in ("trajectory.png", "trajectory_X.png", "trajectory_C.png"):
-        assert (out / name).stat().st_size > 4_000
-    paths = sorted(p for p in out.rglob("*") if p.suffix in (".csv", ".json"))
-    lines = [f"{p.name}\n{folded(p.read_text(encoding='utf-8'))}" for p in paths]
-    unchanged("\n".join([folded(said), *lines]).replace(str(tmp_path), ""))
 
 
 @pytest.mark.parametrize(

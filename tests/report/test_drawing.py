@@ -5,8 +5,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from demo import waves
 from unchanged import drawn as parts_of
 
+from matstd.artefact.body import graph_patch
 from matstd.artefact.price import Construction
 from matstd.cad_out.details import DOT, details_of
 from matstd.report.drawing import Issuer, write_drawing
@@ -16,6 +18,7 @@ from matstd.report.drawing.sections import draw_screw
 from matstd.report.drawing.sheet import A2, Sheet, View
 from matstd.report.drawing.tables import COLUMN
 from matstd.report.drawing.views import draw_from
+from matstd.twin.frames import pose
 
 ISSUER = Issuer("A. Müller", "Workshop & Co", 6.2)
 
@@ -27,6 +30,16 @@ def drawn(upright):
 
 def test_the_whole_sheet(drawn, unchanged) -> None:
     unchanged(parts_of(drawn.figure) + "\n")
+
+
+def test_the_whole_sheet_of_a_large_face(upright, unchanged) -> None:
+    """Which has a section of its own."""
+    face = graph_patch(
+        "FF1", pose(t=np.array([0, 0, 52.0])), (55.0, 45.0), waves(1, 6.0), (5, 5), 44.0
+    )
+    balls = tuple(replace(s, centre=s.centre * [1.15, 1.4, 1.0]) for s in upright.spheres)
+    wide = replace(upright, patches=(face,), spheres=balls)
+    unchanged(parts_of(draw_sheet(wide, details_of(wide), ISSUER).figure) + "\n")
 
 
 def test_the_whole_sheet_of_a_hard_standard_of_parts(upright, unchanged) -> None:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from matstd.diagnosis.fit import fit_run
-from matstd.report.laws import effect_text
+from matstd.report.laws import effect_text, law_sentence
 from matstd.twin.library import ordinary_model, parse_effect
 from matstd.twin.model import Model, columns
 from matstd.twin.units import UM
@@ -64,9 +64,11 @@ def loaded(text, chain):
         ("law(EXX,step last-X)", ()),
     ],
 )
-def test_the_file_computes_what_the_law_computes(name, at, measured) -> None:
+def test_the_file_computes_what_the_law_computes(name, at, measured, unchanged) -> None:
     learning, run, law = learnt(measured, name, at)
-    effect = loaded(effect_text(learning, "run.csv"), run.touches.chain)
+    text = effect_text(learning, "run.csv")
+    unchanged(f"{text}{law_sentence(learning, learning.laws[0])}\n")
+    effect = loaded(text, run.touches.chain)
     found, expected = columns([effect], run.touches), columns([law], run.touches)
     assert found.shape == expected.shape
     np.testing.assert_allclose(found, expected, rtol=1e-3, atol=1e-3 * np.abs(expected).max())

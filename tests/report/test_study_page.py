@@ -1,4 +1,4 @@
-"""The sensitivity page: every map once and in order, regions in words, 3-D scenes of the study."""
+"""The sensitivity page: 3-D scenes of the study, and the page without them."""
 
 import re
 from types import SimpleNamespace
@@ -17,8 +17,6 @@ from matstd.report.pages.study_page import (
     error_scenes,
     sensitivity_scenes,
 )
-from matstd.report.style import figure, save
-from matstd.report.words import sampling_words
 from matstd.sensitivity.first_order import Workspace
 from matstd.sensitivity.population import Population
 from matstd.sensitivity.study import run_study
@@ -65,33 +63,6 @@ def test_scenes_of_S_are_of_different_links_and_change_in_the_volume(study):
         assert np.ptp(scene.values) > 0.02 * scene.values.max()
         assert scene.values.max() < 1.0  # arms of less than a metre
         assert scene.T_readings_artefact is None
-
-
-@pytest.mark.usefixtures("unrendered")
-def test_the_page_holds_every_map_once_and_the_regions_in_words(study, tmp_path):
-    maps = [
-        ("variance_shares.png", "Shares of the parameters. More words."),
-        ("sensitivity.png", "Overview of the sensitivities."),
-    ]
-    for name, _ in maps:
-        save(figure(2.0, 1.0), tmp_path / name)
-    remarks = write_study_page(study, tmp_path, maps, "project.toml")
-    page = (tmp_path / "report.html").read_text(encoding="utf-8").replace("\u00a0", " ")
-    drawn = len(maps) + (0 if remarks else 2)  # without OpenGL a remark stands for two pictures
-    assert page.count("<figure>") == drawn
-    assert page.count("data:image/png;base64,") == drawn
-    assert sampling_words(study.volumetric) in page
-    assert "corners: X, Y and Z in their outer sixths" in page
-    assert "% of the variance" in page
-    assert "project.toml" in page
-    alternatives = re.findall(r'alt="([^"]*)"', page)
-    assert len(set(alternatives)) == drawn
-    assert all(10 < len(text) < 200 for text in alternatives)
-    order = ["Overview of the", "Volumetric error over the linear", "Shares of the"]
-    if not remarks:
-        order.insert(1, "S of angular errors")
-        assert np.all(np.diff([page.index(f"<figcaption>{words}") for words in order]) > 0)
-    assert {p.name for p in tmp_path.iterdir()} >= {name for name, _ in maps} | {"report.html"}
 
 
 def test_without_opengl_the_page_is_written_with_a_remark(study, tmp_path, monkeypatch):
