@@ -32,7 +32,13 @@ from matstd.artefact.layout.shapes import smooth_heights
 from matstd.artefact.layout.upright import ball_on_post
 from matstd.artefact.place import identifying
 from matstd.artefact.reach import ProbeReach, ProbeShape, Requests, joined
-from matstd.artefact.worth import TouchOptions, chosen_touches_on, random_touches, repaired_touches
+from matstd.artefact.worth import (
+    TouchOptions,
+    chosen_touches_on,
+    poses_within,
+    random_touches,
+    repaired_touches,
+)
 from matstd.artefact.worth.attribution import error_shares
 from matstd.artefact.worth.potential import residual_after
 from matstd.twin.compute import silent
@@ -267,6 +273,23 @@ def test_a_touch_from_behind_or_beyond_the_travel_is_not_reachable():
     assert reach.is_reachable(tilted).tolist() == [True, False, True, False]
     away = Requests(up.feature, up.point, up.normal, np.tile([0.0, -20.0 * DEG], (4, 1)))
     assert reach.is_reachable(away).tolist() == [True, False, False, False]
+
+
+@pytest.mark.parametrize(
+    ("c", "b", "wanted", "count", "first"),
+    [
+        # 6 poses over 1 and 90 degrees: sqrt(1) and sqrt(90) times sqrt(6 / sqrt(90)) = 0.795
+        # are 1 and 8 readings. Eight from -90 to 0 are 12.86 degrees apart; those of the first C
+        # are shifted by half of that and end at the limit
+        ((0.0, 0.0), (-90.0, 0.0), 1, 8, [-90, -84, -71, -58, -45, -32, -19, -6]),
+        # 24 poses over 360 and 110 degrees: 0.347 sqrt(360) = 7 and 0.347 sqrt(110) = 4
+        ((-180.0, 180.0), (-90.0, 20.0), 4, 28, [-90, -72, -35, 2]),
+    ],
+)
+def test_candidate_poses_by_hand(chain, c, b, wanted, count, first):
+    poses = poses_within(chain, np.array([c, b]) * DEG, wanted) / DEG
+    assert len(poses) == count
+    assert poses[poses[:, 0] == c[0], 1] == pytest.approx(first)
 
 
 def test_lots_of_touches_are_joined_in_order():
