@@ -9,7 +9,7 @@ from unchanged import Unchanged, facts, folded
 
 from matstd.artefact.body import Core, constraints, contact, max_slope, min_concave_radius
 from matstd.artefact.brief import read_project
-from matstd.artefact.compare import identifiability_report
+from matstd.artefact.compare import identifiability_report, proof_power, task_normals
 from matstd.artefact.feasibility import in_the_way, mutually_probeable, room_among, touches_on
 from matstd.artefact.hidden import (
     Scan,
@@ -124,11 +124,15 @@ def test_what_touches_show_is_what_it_was(criterion, upright, touches, unchanged
     power = hidden_power(here, measured_together([on_balls, scan, on_faces]), at)
     place = np.arange(len(tried)), np.unique(tried.feature, return_inverse=True)[1]
     some = showing_touches(here, on_balls, on_faces, at, 9, *place)
-    library = visibility(criterion, touches)
+    many = random_touches(reach, criterion.volume, criterion.rotary, 240, rng)
+    library = visibility(criterion, many)
     rows = criterion.rows(touches), criterion.known_rows(touches), criterion.whitened(tried)
     curve = touch_curve(criterion, "", touches, counts=(20, 60))
-    shown = library.effects, library.shown(criterion, joined([touches, tried]))
-    unchanged(facts((scan.u, power, some, shown, rows, curve, at)))
+    few, normals = library.effects[::5], task_normals(criterion, tried, rng)
+    proofs = [proof_power(here, many, tried[::4], few, rng, n) for n in (None, normals)]
+    seen = library.shown(criterion, joined([touches, tried]))
+    shown = [effect.name for effect in library.effects], seen
+    unchanged(facts((scan.u, power, some, shown, proofs, rows, curve, at)))
 
 
 def test_criteria_are_what_they_were(criterion, touches, unchanged) -> None:
