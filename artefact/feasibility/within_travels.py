@@ -4,6 +4,7 @@ A refusal names the binding travel or angle and the nearest feasible changes. Ch
 the order of their size, on few places and poses first; every named one passed the full check.
 """
 
+from bisect import bisect_left
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
@@ -152,16 +153,13 @@ def _lower_body(brief: Brief, wanted: ProbeReach, poses: Array) -> tuple[str, st
             to_rise, retract = _to_rise(brief, reach, poses)
             return bool(np.any(to_rise <= retract))
 
-        steps = np.arange(body.low + _LOWER_STEP, body.high, _LOWER_STEP)
-        low, high = 0, len(steps)
-        if high and rises(float(steps[0])):
-            while high - low > 1:
-                middle = (low + high) // 2
-                low, high = (middle, high) if rises(float(steps[middle])) else (low, middle)
+        steps = np.arange(body.low + _LOWER_STEP, body.high, _LOWER_STEP).tolist()
+        low_enough = steps[: bisect_left(steps, True, key=lambda high: not rises(high))]
+        if low_enough:
             size = f"{body.high - body.low:.0f} mm high"
             return (
                 f"{body.name}, {size},",
-                f"a height of {steps[low] - body.low:.0f} mm of {body.name}",
+                f"a height of {low_enough[-1] - body.low:.0f} mm of {body.name}",
             )
     return "", ""
 
