@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from unchanged import folded
+from unchanged import folded, page_text
 
 from matstd.api.replanning import planned_visit
 from matstd.twin.errors import BadFile
@@ -46,6 +46,18 @@ def test_the_programs_of_a_visit_keep_its_order_sides_and_standstill(
     assert f"before {second.name}" in " ".join(made.lines)
     assert "feed override 50 %" in " ".join(made.lines)
     unchanged("\n".join([folded(first.text), folded(second.text), *made.lines]))
+
+
+def test_the_command_writes_the_visit(
+    design, visit, tmp_path, monkeypatch, answer, unrendered, unchanged
+) -> None:
+    out = tmp_path / "out"
+    monkeypatch.setenv("COLUMNS", "100")
+    said = answer(["replan", str(visit), "--design", str(design), "-o", str(out)])
+    said = said.replace(str(tmp_path), "").replace(str(design), "")
+    files = sorted(p.relative_to(out).as_posix() for p in out.rglob("*"))
+    page = page_text((out / "setup" / "setup.html").read_text(encoding="utf-8"))
+    unchanged("\n".join([said, *files, page, ""]))
 
 
 @pytest.mark.parametrize(
