@@ -122,7 +122,7 @@ class _Reader:
             self._moving(said)
             return
         said.kept.extend(said.text(other, but="XYZABCUVWD"))
-        if is_home and (said.kept or axes):
+        if is_home:
             self._home(said)
         elif said.kept:
             self.reading.keep(line, " ".join(said.kept))

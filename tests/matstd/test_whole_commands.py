@@ -13,7 +13,7 @@ from matstd.cli import COMMANDS, _parser, main
 from matstd.twin.files import read_machine
 
 STATE = "--after 90 --rpm 9000 --add thermal-lag(EZZ)=25um,tau=18min"
-ERRORS = f"machine.toml --errors errors.toml --tool-length 160 --datum Z=-400 {STATE}"
+ERRORS = f"machine.toml --errors errors.toml --tool-length 160 --datum X=10 Y=-20 Z=-390 B=-5 C=15 {STATE}"
 PROGRAM = """G21 G90 G94
 T1 M6
 G0 X-60 Y10 Z50
@@ -35,7 +35,8 @@ COMMANDS_ON = {
     "contributions-poses": f"contributions {ERRORS} --poses poses.csv -o out",
     "tables": f"compensate {ERRORS} --tables out",
     "program": f"compensate {ERRORS} --program part.ngc -o out.ngc",
-    "tables-of-a-model": "compensate model.toml --tool-length 160 --tables out --control sinumerik",
+    "tables-of-a-model": "compensate model.toml --tool-length 160 --datum Z=-300 B=-20 C=40 "
+    "--tables out --control sinumerik",
     "program-of-a-model": "compensate model.toml --tool-length 160 --datum Z=-400 "
     "--program part.ngc -o out.ngc",
     "contributions-of-a-model": "contributions model.toml --tool-length 160 --poses poses.csv "
