@@ -6,6 +6,7 @@ from itertools import product
 import numpy as np
 import pytest
 from foreign_cases import BENCH, DH, ENCODERS, HOLES, LASER, MAP
+from scipy.spatial.transform import Rotation
 from written import folder_text
 
 from matstd import machine_file
@@ -39,8 +40,11 @@ def circle() -> str:
     return table("Angle [°];CCW [µm];CW [µm]", a, ccw, ccw[::-1] + 0.5, mark=";")
 
 
-def arm() -> str:
-    """Joints, and two reflectors seen by a tracker, the second hidden once; torque and load."""
+def arm(is_oriented: bool = False) -> str:
+    """Joints, and two reflectors seen by a tracker, the second hidden once; torque and load.
+
+    Or one target with its orientation, as a rotation vector.
+    """
     q = np.random.default_rng(3).uniform(-1.5, 1.5, (14, 6))
     rows = np.array([line.split(",") for line in DH.splitlines()[1:]], dtype=float)
     lines = ["j1,j2,j3,j4,j5,j6,x1,y1,z1,x2,y2,z2,tau2 [Nm],Fz [N],motor [°C],state"]
@@ -54,7 +58,12 @@ def arm() -> str:
         places = [*(T @ [12, -35, 60, 1])[:3] + noise[:3], *(T @ [-12, 35, 50, 1])[:3] + noise[3:]]
         cells = [*(f"{v:.8f}" for v in joints / DEG), *(f"{v:.5f}" for v in places)]
         cells[9:12] = cells[9:12] if k != 4 else [""] * 3
+        if is_oriented:
+            turn = Rotation.from_matrix(T[:3, :3]).as_rotvec(degrees=True)
+            cells[9:12] = [f"{v + 0.002 * np.cos(3.0 * k + v):.6f}" for v in turn]
         lines.append(",".join([*cells, f"{10.5 + k}", "-30", f"{35 + 0.1 * k:.1f}", "ok"]))
+    if is_oriented:
+        lines[0] = lines[0].replace("x1,y1,z1,x2,y2,z2", "x,y,z,rx [deg],ry [deg],rz [deg]")
     return "\n".join(lines) + "\n"
 
 
@@ -204,6 +213,7 @@ IMPORTS = {
     "heights": ("heights.csv --part --u-um 5", HEIGHTS),
     "meshes": ("meshes.cfg --part --u-um 5", PRINTER),
     "arm": ("arm.csv --arm --dh dh.csv --u-um 10", arm()),
+    "oriented": ("oriented.csv --arm --dh dh.csv --u-um 10 --u-urad 40", arm(is_oriented=True)),
     "stated-arm": ("stated-arm.csv --arm --dh dh.csv --modified --u-um 10", arm()),
     "mapped": ("mapped.csv --map map.toml", BENCH),
     "clocks": ("clocks.csv --map clocks.toml", CLOCKS),

@@ -73,7 +73,7 @@ COMMANDS_ON = {
     "effect": "effects thermal-lag",
     "effects-by-word": "effects spindle growth",
     "new-machine": "new machine --like fork-portal",
-    "new-project": "new project --machine machine.toml --table-mm 320",
+    "new-project": "new project --machine machine.toml -o new.toml",
     "new-run": "new run",
     "new-effect": "new effect",
     "examples": "examples",

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from machines import HSM600U, LATHE
+from machines import HSM600U, LATHE, TURNING
 from unchanged import drawn
 
 from matstd.artefact.feasibility import Room
@@ -11,15 +11,8 @@ from matstd.artefact.reach import ANGLE, Limit, PlacesInReach
 from matstd.diagnosis.fit import fit_run
 from matstd.report.plots import draw_form, draw_reach, draw_room, is_form
 from matstd.twin.library import ordinary_model, parse_effect
-from matstd.twin.machine import Axis, make_chain
 from matstd.twin.model import Model
 from matstd.twin.units import DEG
-
-TURNING = make_chain(
-    "turning",
-    "[w C' f X Z t]",
-    {"C": Axis((-np.pi, np.pi)), "X": Axis((-100.0, 100.0)), "Z": Axis((-300.0, 0.0))},
-)
 
 
 @pytest.mark.parametrize("chain", [HSM600U, TURNING, LATHE], ids=lambda c: c.name.split()[0])

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from machines import LATHE, none_but
+from machines import LATHE, TURNING, none_but
 
 from matstd.report.maps import draw_maps, study_maps
 from matstd.report.style import nothing as nothing_to_draw
@@ -77,13 +77,16 @@ def test_ranking_is_by_share(study):
     assert sum(share for _, share in ranking) == pytest.approx(1.0)
 
 
-def test_a_machine_with_two_readings_is_studied_too(tmp_path, rendered_alone):
-    rendered_alone()
-    area = Workspace(LATHE, {}, 50.0)
+@pytest.mark.parametrize("machine", [LATHE, TURNING], ids=lambda c: c.name)
+def test_maps_of_a_machine_of_few_axes(machine, tmp_path, rendered_alone, unchanged):
+    figures, area = rendered_alone(), Workspace(machine, {}, 50.0)
     assert section_pairs(area) == [("X", "Z")]
-    study = run_study(Population(LATHE), area, 40, 50, np.random.default_rng(1))
-    maps = draw_maps(study, tmp_path)
-    assert all((tmp_path / name).exists() for name, _ in maps)
+    sizes = {s.name: (10.0 + k, 20.0 + 2.0 * k) for k, s in enumerate(machine.symbols)}
+    study = run_study(
+        Population(machine, none_but(**sizes)), area, 40, 50, np.random.default_rng(1)
+    )
+    captions = draw_maps(study, tmp_path)
+    unchanged("\n".join(f"{name}: {words}\n{figures[name[:-4]]}" for name, words in captions))
 
 
 @pytest.mark.filterwarnings("error")
