@@ -13,7 +13,8 @@ from matstd.cli import COMMANDS, _parser, main
 from matstd.twin.files import read_machine
 
 STATE = "--after 90 --rpm 9000 --add thermal-lag(EZZ)=25um,tau=18min"
-ERRORS = f"machine.toml --errors errors.toml --tool-length 160 --datum X=10 Y=-20 Z=-390 B=-5 C=15 {STATE}"
+DATUM = "--tool-length 160 --datum X=10 Y=-20 Z=-390 B=-5 C=15"
+ERRORS = f"machine.toml --errors errors.toml {DATUM} {STATE}"
 PROGRAM = """G21 G90 G94
 T1 M6
 G0 X-60 Y10 Z50
