@@ -61,8 +61,8 @@ COMMANDS_ON = {
     "compare": "compare run.csv -o out",
     "compare-balls": "compare probed.csv --start setup --standard standard.toml -o out",
     "compare-model": "compare run.csv --model model.toml --no-report -o out",
-    "diagnose": "diagnose run.csv --auto --no-learn --no-report -o out --only thermal-lag(EZZ) "
-    "thermal-lag(EZX) backlash",
+    "diagnose": "diagnose run.csv --no-learn --no-report -o out --add backlash(X) "
+    "--only thermal-lag(EZZ) thermal-lag(EZX) backlash",
     "trend": "trend trend -o out",
     "thermal": "thermal drift.csv --train-until 5 --sensor-noise 0.1 --probe-every 2 -o out",
     "thermal-law": "thermal drift.csv -o law; thermal --law law/thermal.json drift.csv "
