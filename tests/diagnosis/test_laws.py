@@ -141,6 +141,16 @@ def test_a_pulse_over_time_is_no_law_over_a_temperature_that_follows_the_time() 
     assert not found.laws[0].travels
 
 
+def test_a_set_up_that_cells_left_out_extrapolate_refuses_no_law() -> None:
+    texts = law_case(np.random.default_rng([60611, 9]), "hmc1995", "temperature_position")
+    run, second, free = (read_back(text, MACHINES["hmc1995"]) for text in texts[:3])
+    found = learn_laws(run)
+    (law,) = [one.law for one in found.laws]
+    assert [factor.name for factor in law.factors] == ["quad Y", "lin T-spindle"]
+    true = error_left(fit_beside(0.0, free, ordinary_model(free.touches.chain)))
+    assert second_run(found, second).learnt < 1.1 * true < 0.9 * second_run(found, second).without
+
+
 def test_another_run_is_predicted_less_surely_by_the_size_of_the_law(stylus) -> None:
     _, (run, second, _), found = stylus
     text = model_text(found.saved, "run")
