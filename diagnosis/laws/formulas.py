@@ -8,16 +8,17 @@ that factor is a carrier like any other.
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
-from matstd.diagnosis.laws.screening import Field
+from matstd.diagnosis.laws.screening import Field, Grids, Single
 from matstd.diagnosis.laws.space import MIN_OWN, Space
 from matstd.diagnosis.residual import Bearer
-from matstd.twin.frames import Array, IntArray
-from matstd.twin.laws import SHAPES, Driver, Factor, Law, Shape, grid, shapes_of
+from matstd.twin.frames import Array
+from matstd.twin.laws import SHAPES, Driver, Factor, Law
+
+SMALLEST_SQUARE = 1e-30  # of a column without numbers
 
 COLUMNS_AT_A_TIME = 2000  # columns that are projected at a time
 
@@ -60,30 +61,6 @@ class Part(NamedTuple):
     places: tuple[float, ...]
 
 
-@dataclass(frozen=True, eq=False)
-class Grids:
-    """Columns of all shapes of the variables of a run, made once."""
-
-    field: Field
-
-    @cached_property
-    def _made(self) -> dict[str, list[tuple[Shape, Array, Array]]]:
-        return {}
-
-    def of(self, driver: Driver) -> list[tuple[Shape, Array, Array]]:
-        """Every shape of a variable with its grid (G, places) and columns (coefficients, N, G)."""
-        if driver.name not in self._made:
-            x = self.field.x[driver.name]
-            out = []
-            for shape in shapes_of(driver, x):
-                points = grid(shape, driver, x)
-                columns = [np.stack(shape.values(x, *p)) for p in points]
-                if columns:
-                    out.append((shape, points, np.stack(columns, axis=2)))
-            self._made[driver.name] = out
-        return self._made[driver.name]
-
-
 _FARTHEST = 1e100  # of a formula in a step of the search: the square of a larger value overflows
 
 
@@ -113,60 +90,64 @@ def scan(
     Returns:
         Shape and place, squared residual explained, number of its parameters.
     """
-    out, C = [], C * space.used[:, None]
-    bases = np.concatenate([space.basis * C[:, i : i + 1] for i in range(C.shape[1])], axis=1).T
-    for shape, points, columns in grids.of(driver):
-        if most is not None and len(points) > most:
-            spread_out = _spread_out(len(points), most)
-            points, columns = points[spread_out], columns[:, :, spread_out]
-        explained = np.concatenate(
-            [
-                _explained(space, C, bases, columns[:, :, at : at + COLUMNS_AT_A_TIME])
-                for at in range(0, columns.shape[2], COLUMNS_AT_A_TIME)
-            ]
-        )
-        g = int(np.argmax(explained))
-        part = Part(Factor(shape, driver), tuple(float(v) for v in points[g]))
-        count = C.shape[1] * len(shape.coefficients) + len(shape.free)
-        out.append((part, float(explained[g]), count))
+    C = C * space.used[:, None]
+    C = C / (float(np.sqrt((C**2).mean())) or 1.0)
+    k = C.shape[1]
+    carrier = _Carrier(
+        basis=_single([space.basis * C[:, [i]] for i in range(k)]),
+        sides=_single([C * space.r[:, None]]),
+        squares=_single([C[:, [i]] * C for i in range(k)]),
+    )
+    out = []
+    for _, shapes, grid_of_each, columns in grids.of(driver, most):
+        blocks = range(0, columns.shape[2], COLUMNS_AT_A_TIME)
+        each = [carrier.explained(columns[:, :, at : at + COLUMNS_AT_A_TIME]) for at in blocks]
+        ends = np.cumsum([len(points) for points in grid_of_each])
+        found = np.split(np.concatenate(each), ends[:-1])
+        for shape, points, explained in zip(shapes, grid_of_each, found, strict=True):
+            g = int(np.argmax(explained))
+            part = Part(Factor(shape, driver), tuple(float(v) for v in points[g]))
+            count = k * len(shape.coefficients) + len(shape.free)
+            out.append((part, float(explained[g]), count))
     return out
 
 
-def _spread_out(count: int, most: int) -> IntArray:
-    """Numbers of points of a grid, evenly in all its directions: by the golden section."""
-    places = np.arange(most) * (0.5 * (np.sqrt(5.0) - 1.0)) % 1.0
-    return np.unique((places * count).astype(int))
+def _single(columns: Sequence[Array]) -> Single:
+    """Columns (N, ...) beside one another, as rows in single precision."""
+    return np.ascontiguousarray(np.concatenate(columns, axis=1).T, dtype=np.float32)
 
 
-def _explained(space: Space, C: Array, bases: Array, S: Array) -> Array:
-    """Squared residual that the carrier times the shape explains at every point, (G,).
+class _Carrier(NamedTuple):
+    """A carrier of k columns, of about one: their squares must not underflow."""
 
-    Args:
-        bases: The basis of the model times every column of the carrier, (k P, N).
-    """
-    (m, _, points), k = S.shape, C.shape[1]
-    squares = np.stack([C[:, i] * C[:, g] for i in range(k) for g in range(k)])
-    U = [(bases @ s).reshape(k, -1, points) for s in S]
-    b = np.stack([(C.T * space.r) @ s for s in S], axis=1).reshape(k * m, points)
-    G = np.empty((k * m, k * m, points))
-    raw = np.empty((k * m, points))
-    for j in range(m):
-        for h in range(j + 1):
-            products = (squares @ (S[j] * S[h])).reshape(k, k, points)
-            for i in range(k):
-                for g in range(k):
-                    own = products[i, g] - np.einsum("pg,pg->g", U[j][i], U[h][g])
-                    G[i * m + j, g * m + h] = G[g * m + h, i * m + j] = own
-                raw[i * m + j] = products[i, i]
-    if k * m == 1:
-        is_own = G[0, 0] > MIN_OWN * raw[0]
-        return np.where(is_own, b[0] ** 2 / np.where(is_own, G[0, 0], 1.0), 0.0)
-    size = np.sqrt(np.maximum(raw, 1e-300))
-    G, b = G / (size[:, None] * size), b / size
-    values, vectors = np.linalg.eigh(G.transpose(2, 0, 1))
-    along = np.einsum("gab,ag->gb", vectors, b) ** 2
-    is_own = values > MIN_OWN
-    return np.asarray(np.where(is_own, along / np.where(is_own, values, 1.0), 0.0).sum(axis=1))
+    basis: Single  # what the model can imitate, times every column, (k P, N)
+    sides: Single  # columns times the residual, (k, N)
+    squares: Single  # columns times one another, (k k, N)
+
+    def explained(self, S: Single) -> Array:
+        """Squared residual that it explains times shapes (coefficients, N, G), (G,)."""
+        (m, _, points), k = S.shape, len(self.sides)
+        U = [(self.basis @ s).reshape(k, -1, points) for s in S]
+        b = np.stack([self.sides @ s for s in S], axis=1).reshape(k * m, points)
+        G = np.empty((k * m, k * m, points))
+        raw = np.empty((k * m, points))
+        for j in range(m):
+            for h in range(j + 1):
+                products = (self.squares @ (S[j] * S[h])).reshape(k, k, points)
+                for i in range(k):
+                    for g in range(k):
+                        own = products[i, g] - np.einsum("pg,pg->g", U[j][i], U[h][g])
+                        G[i * m + j, g * m + h] = G[g * m + h, i * m + j] = own
+                    raw[i * m + j] = products[i, i]
+        size = np.sqrt(np.maximum(raw, SMALLEST_SQUARE))
+        G, b = G / (size[:, None] * size), b / size
+        if k * m == 1:
+            is_own = G[0, 0] > MIN_OWN
+            return np.where(is_own, b[0] ** 2 / np.where(is_own, G[0, 0], 1.0), 0.0)
+        values, vectors = np.linalg.eigh(G.transpose(2, 0, 1))
+        along = np.einsum("gab,ag->gb", vectors, b) ** 2
+        is_own = values > MIN_OWN
+        return np.asarray(np.where(is_own, along / np.where(is_own, values, 1.0), 0.0).sum(axis=1))
 
 
 def candidate(

@@ -8,17 +8,29 @@ corners; what is too quick for it is scanned as a sine.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from dataclasses import field as dataclass_field
 from itertools import combinations
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 import numpy as np
+from numpy.typing import NDArray
 
 from matstd.diagnosis.laws.curves import Curves, Group, Waves, curve_evidence
-from matstd.diagnosis.laws.space import MIN_OWN, Space
+from matstd.diagnosis.laws.space import MIN_OWN, SMALLEST_COLUMN, Space
 from matstd.diagnosis.residual import Bearer, bearers
 from matstd.twin.effects import grid_distance
 from matstd.twin.frames import Array
-from matstd.twin.laws import ON_BALL, SHAPES, WORDS, Driver, curve_columns, drivers, grid
+from matstd.twin.laws import (
+    ON_BALL,
+    SHAPES,
+    WORDS,
+    Driver,
+    Shape,
+    curve_columns,
+    drivers,
+    grid,
+    shapes_of,
+)
 from matstd.twin.record import Touches
 
 LENGTHS = (0.03, 0.1, 0.3)  # correlation lengths of curves, as shares of the range
@@ -31,6 +43,9 @@ DOMAIN_MARGIN = 0.1
 
 LOOPS = ("hysteresis", "play-quad")  # shapes with a memory, which a curve shows least
 FAST_WAVES = 1200  # frequencies up to which sines of a reading are scanned, per range and half
+
+
+Single = NDArray[np.float32]
 
 
 class Found(NamedTuple):
@@ -167,6 +182,64 @@ def _surface_waves(field: Field, driver: Driver) -> tuple[Array, Array]:
     return np.cos(np.pi * share[:, None] * k), weight / weight[1]
 
 
+class Scanned(NamedTuple):
+    """Shapes of a variable with one number of coefficients, beside one another."""
+
+    driver: Driver
+    shapes: tuple[Shape, ...]
+    points: tuple[Array, ...]  # the grid of each, (G, places)
+    columns: Single  # of all of them, one at most, (coefficients, N, all points)
+
+    @classmethod
+    def of(cls, driver: Driver, x: Array, shapes: Sequence[Shape], points: Sequence[Array]) -> Self:
+        """In single precision, since scans rank points; what is kept is computed anew."""
+        each = [_columns(s, x, own) for s, own in zip(shapes, points, strict=True)]
+        columns = np.concatenate(each, axis=2)
+        columns /= np.maximum(np.abs(columns).max(axis=1, keepdims=True), SMALLEST_COLUMN)
+        return cls(driver, tuple(shapes), tuple(points), columns.astype(np.float32))
+
+
+def _columns(shape: Shape, x: Array, points: Array) -> Array:
+    """Columns of a shape at points of its grid, (coefficients, N, G)."""
+    if shape.remembers:
+        return np.stack([np.stack(shape.values(x, *at)) for at in points], axis=2)
+    wide = shape.values(x[:, None], *points.T)
+    return np.stack([np.broadcast_to(column, (len(x), len(points))) for column in wide])
+
+
+@dataclass(frozen=True, eq=False)
+class Grids:
+    """Columns of all shapes of the variables of a run, made once."""
+
+    field: Field
+    _made: dict[tuple[str, int | None], list[Scanned]] = dataclass_field(default_factory=dict)
+
+    def of(self, driver: Driver, most: int | None = None) -> list[Scanned]:
+        """Every shape of a variable at its grid, of each at most so many points."""
+        key = driver.name, most
+        if key not in self._made:
+            self._made[key] = self._scanned(driver, most)
+        return self._made[key]
+
+    def _scanned(self, driver: Driver, most: int | None) -> list[Scanned]:
+        x = self.field.x[driver.name]
+        each = [(shape, grid(shape, driver, x)) for shape in shapes_of(driver, x)]
+        each = [(shape, _some(points, most)) for shape, points in each if len(points)]
+        out = []
+        for count in sorted({len(shape.coefficients) for shape, _ in each}):
+            own = [one for one in each if len(one[0].coefficients) == count]
+            out.append(Scanned.of(driver, x, *zip(*own, strict=True)))
+        return out
+
+
+def _some(points: Array, most: int | None) -> Array:
+    """At most so many points of a grid, evenly in all its directions: by the golden section."""
+    if most is None or len(points) <= most:
+        return points
+    places = np.arange(most) * (0.5 * (np.sqrt(5.0) - 1.0)) % 1.0
+    return points[np.unique((places * len(points)).astype(int))]
+
+
 class Rough(NamedTuple):
     """A shape that no smooth curve shows, at a carrier, with the squared residual it explains."""
 
@@ -177,48 +250,46 @@ class Rough(NamedTuple):
     explained: float
 
 
-def rough_shapes(space: Space, field: Field, each: int) -> list[Rough]:
-    """Quick sines of readings and of time, and loops of hysteresis: the best of either kind.
+def rough_grids(field: Field) -> list[Scanned]:
+    """Quick sines of readings and of time, and loops of hysteresis."""
+    grids = list[tuple[Driver, Shape, Array]]()
+    for driver in field.drivers:
+        x = field.x[driver.name]
+        if driver.nature == "linear" or driver.name == "time":
+            grids.append((driver, SHAPES["sine"], 1.0 / _quick_frequencies(driver, x)[:, None]))
+        for word in LOOPS if driver.name not in ON_BALL else ():
+            if word in WORDS[driver.nature]:
+                grids.append((driver, SHAPES[word], grid(SHAPES[word], driver, x)))
+    return [Scanned.of(d, field.x[d.name], [s], [points]) for d, s, points in grids if len(points)]
+
+
+def rough_shapes(space: Space, field: Field, grids: Sequence[Scanned], each: int) -> list[Rough]:
+    """The best quick sines, and the best loops.
 
     What they explain is approximate: the model imitates little of a quick wave or of a loop.
     """
     C = np.concatenate([b.C[:, i : i + 1] for b in field.bearers for i in range(b.C.shape[1])], 1)
     C = C * space.used[:, None]
+    size = np.sqrt((C**2).mean(axis=0)) + SMALLEST_COLUMN  # squares in single precision underflow
+    C = C / size
     owner = [b for b in field.bearers for _ in range(b.C.shape[1])]
     share = max(1.0 - space.basis.shape[1] / space.count, 0.1)
-    R, S = C * space.r[:, None], C**2
-    waves, loops = list[Rough](), list[Rough]()
-    for driver in field.drivers:
-        x = field.x[driver.name]
-        if driver.nature == "linear" or driver.name == "time":
-            f = _quick_frequencies(driver, x)
-            angle = 2.0 * np.pi * x[:, None] * f
-            along = (R.T @ np.sin(angle)) ** 2 + (R.T @ np.cos(angle)) ** 2  # (carriers, F)
-            power = along / (0.5 * share * S.sum(axis=0)[:, None] + MIN_OWN)
-            waves += _best_of_carriers(owner, driver, "sine", 1.0 / f[:, None], power)
-        for word in LOOPS if driver.name not in ON_BALL else ():
-            if word in WORDS[driver.nature]:
-                points = grid(SHAPES[word], driver, x)
-                H = np.stack([SHAPES[word].values(x, *p)[0] for p in points], 1)
-                power = (R.T @ H) ** 2 / (share * (S.T @ H**2) + MIN_OWN)
-                loops += _best_of_carriers(owner, driver, word, points, power)
-    return [r for kind in (waves, loops) for r in sorted(kind, key=lambda r: -r.explained)[:each]]
-
-
-def _best_of_carriers(
-    owner: Sequence[Bearer], driver: Driver, word: str, places: Array, power: Array
-) -> list[Rough]:
-    """Every column of a carrier at the places (G, K) where it explains most: power (columns, G)."""
-    return [
-        Rough(
-            bearer=owner[i],
-            driver=driver,
-            word=word,
-            places=tuple(places[j]),
-            explained=power[i, j],
-        )
-        for i, j in enumerate(np.argmax(power, axis=1) if power.size else ())
-    ]
+    R, S = (A.T.astype(np.float32) for A in (C * space.r[:, None], C**2))
+    found: dict[bool, list[Rough]] = {True: [], False: []}
+    for driver, (shape,), (points,), columns in grids:
+        along = sum((R @ column) ** 2 for column in columns)
+        power = along / (share * (S @ (columns**2).mean(axis=0)) + MIN_OWN)
+        found[shape.word in LOOPS] += [
+            Rough(
+                bearer=owner[i],
+                driver=driver,
+                word=shape.word,
+                places=tuple(points[j].tolist()),
+                explained=float(power[i, j]),
+            )
+            for i, j in enumerate(np.argmax(power, axis=1))
+        ]
+    return [r for kind in found.values() for r in sorted(kind, key=lambda r: -r.explained)[:each]]
 
 
 def _quick_frequencies(driver: Driver, x: Array) -> Array:

@@ -8,7 +8,6 @@ import numpy as np
 from matstd.diagnosis.laws.curves import Curves
 from matstd.diagnosis.laws.formulas import (
     Candidate,
-    Grids,
     Part,
     candidate,
     columns_of,
@@ -23,11 +22,14 @@ from matstd.diagnosis.laws.policy import LawPolicy
 from matstd.diagnosis.laws.screening import (
     Field,
     Found,
+    Grids,
+    Scanned,
     by_evidence,
     curves_of,
     evidence_of,
     field_of,
     modulations,
+    rough_grids,
     rough_shapes,
     surfaces_of,
     waves_of,
@@ -46,6 +48,10 @@ MIN_SHARE_SINGLE, MIN_SHARE_PAIR = 0.4, 0.6
 """Share of the best evidence of a curve from which a formula is looked for."""
 
 MIN_GAIN_PAIR = 3.0  # log evidence that a second variable must add to a curve
+
+HOPE_OF_PRODUCT = 0.5
+"""Share of what a product of two shapes must gain, all charges included, that the curve of its
+variables gains at least: where curves gained less than 9, no product on a grid gained 10 of 19."""
 
 CLEAR_EVIDENCE = 5.0
 """Log evidence by which a formula of one shape is so much better than the curve that no product of
@@ -93,6 +99,7 @@ class Ground:
 
     field: Field  # carriers and variables
     grids: Grids  # columns of all shapes
+    rough: list[Scanned]  # columns of shapes that no curve shows
     curves: Curves  # inner products of curves over every variable
     surfaces: Curves  # of surfaces over every two
 
@@ -100,7 +107,7 @@ class Ground:
     def of(cls, run: Run) -> "Ground":
         """Of a run."""
         field = field_of(run.touches, run.u)
-        return cls(field, Grids(field), curves_of(field), surfaces_of(field))
+        return cls(field, Grids(field), rough_grids(field), curves_of(field), surfaces_of(field))
 
 
 def search_law(space: Space, ground: Ground, policy: LawPolicy) -> Searched:
@@ -114,15 +121,16 @@ def search_law(space: Space, ground: Ground, policy: LawPolicy) -> Searched:
     found: list[Candidate] = []
     for f in _worth(one, two, MIN_SHARE_SINGLE, TOP_SINGLES):
         found += single_formulas(space, grids, f.bearer, f.drivers[0], 4)
-    rough = _rough(space, grids)
+    rough = _rough(space, ground)
     if has_products:
         found += [*_modulated(space, grids, rough), *_modulated(space, grids, found)]
     found += rough
     best = max((c.score for c in found), default=-np.inf)
+    least = HOPE_OF_PRODUCT * (policy.tried_products + policy.min_score)
     if has_products and best < one[0].evidence + CLEAR_EVIDENCE:
-        for f in _worth(one, two, MIN_SHARE_SINGLE, TOP_SQUARES):
+        for f in _worth(one, two, MIN_SHARE_SINGLE, TOP_SQUARES, least):
             found += product_formulas(space, grids, f.bearer, (f.drivers[0], f.drivers[0]), SQUARES)
-    for f in _worth(_gaining(two, one), one, MIN_SHARE_PAIR, TOP_PAIRS):
+    for f in _worth(_gaining(two, one), one, MIN_SHARE_PAIR, TOP_PAIRS, least):
         found += product_formulas(space, grids, f.bearer, f.drivers, 6)
     scored = [(_charged(c, field, policy).score, c) for c in _distinct(found)]
     near = _promising(scored, {(f.bearer.carrier.name, f.drivers): f.evidence for f in one})
@@ -210,14 +218,20 @@ def _gain(one: Candidate, space: Space) -> float:
     return float(space.gained(np.array(one.explained)))
 
 
-def _worth(found: Sequence[Found], beside: Sequence[Found], share: float, most: int) -> list[Found]:
+def _worth(
+    found: Sequence[Found],
+    beside: Sequence[Found],
+    share: float,
+    most: int,
+    least: float = 0.0,
+) -> list[Found]:
     """Those whose curve comes near the best of all, of every variable a few carriers."""
     top = max([f.evidence for f in (*found[:1], *beside[:1])], default=0.0)
     count: dict[tuple[str, ...], int] = {}
     out: list[Found] = []
     for f in found:
         names = tuple(d.name for d in f.drivers)
-        if len(out) >= most or f.evidence < share * top or f.evidence <= 0.0:
+        if len(out) >= most or f.evidence < share * top or f.evidence <= least:
             break
         count[names] = count.get(names, 0) + 1
         if count[names] <= PER_DRIVER:
@@ -235,12 +249,12 @@ def _gaining(two: Sequence[Found], one: Sequence[Found]) -> list[Found]:
     ]
 
 
-def _rough(space: Space, grids: Grids) -> list[Candidate]:
+def _rough(space: Space, ground: Ground) -> list[Candidate]:
     """Shapes that no curve shows."""
-    field = grids.field
+    field = ground.field
     return [
         candidate(space, field, r.bearer, [Part(Factor(SHAPES[r.word], r.driver), r.places)])
-        for r in rough_shapes(space, field, ROUGH)
+        for r in rough_shapes(space, field, ground.rough, ROUGH)
     ]
 
 

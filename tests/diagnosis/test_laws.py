@@ -45,6 +45,7 @@ from matstd.diagnosis.laws import (
     second_run,
 )
 from matstd.diagnosis.laws.beginning import Beginning
+from matstd.diagnosis.laws.formulas import columns_of, scan, spread
 from matstd.diagnosis.laws.learn import _by_rival as weighed
 from matstd.diagnosis.laws.library import LibraryEffect
 from matstd.diagnosis.laws.remainder import _determined
@@ -337,6 +338,34 @@ def test_waves_over_even_readings_end_at_twice_their_distance(stylus) -> None:
     assert len(_quick_frequencies(linear, np.linspace(0.0, 400.0, 9))) == 0
     uneven = even + np.random.default_rng(3).uniform(-6.0, 6.0, len(even))
     assert 0.5 / _quick_frequencies(linear, uneven).max() < 0.5
+
+
+def test_a_scan_ranks_points_as_least_squares_do(stylus) -> None:
+    _, _, found = stylus
+    fit, ground = found.before, Ground.of(found.before.run)
+    space, factor = Space.of(fit), fit.noise.factor
+    X = np.vstack([fit.X[fit.used] * factor, np.eye(fit.X.shape[1])])
+    y = np.r_[fit.y[fit.used] * factor, np.zeros(X.shape[1])]
+
+    def beside_model(columns_there) -> np.ndarray:
+        return columns_there - X @ np.linalg.lstsq(X, columns_there)[0]
+
+    bearers = {b.carrier.name: b for b in ground.field.bearers}
+    variables = {d.name: d for d in ground.field.drivers}
+    compared = 0
+    for carrier, variable in (("bias", "time"), ("shift", "X"), ("EXX", "T-spindle")):
+        C = bearers[carrier].C
+        for part, explained, _ in scan(space, ground.grids, C, variables[variable]):
+            law = spread(C, columns_of(ground.field, space, [part]))[fit.used]
+            law = np.vstack(
+                [law / np.linalg.norm(law, axis=0), np.zeros((X.shape[1], law.shape[1]))]
+            )
+            own, size, _ = np.linalg.svd(beside_model(law), full_matrices=False)
+            if size[-1] ** 2 > 1e-3:  # else the model imitates a part of it
+                along = own.T @ beside_model(y)
+                assert explained == pytest.approx(along @ along, rel=1e-3, abs=1e-3)
+                compared += 1
+    assert compared > 30
 
 
 def test_no_curve_is_offered_over_a_direction(stylus) -> None:
