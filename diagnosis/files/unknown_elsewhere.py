@@ -95,7 +95,8 @@ def judged_laws(
                 )
                 known, least = known - added[law.name], tried
         for one in bound:
-            tried = fit_beside(known + moved(one.effect), run, others)
+            # on the same rows: touches that contradict the law are no gross errors
+            tried = fit_beside(known + moved(one.effect), run, others, least.gross)
             if error_left(tried) < REPEATED * error_left(least):
                 shown.append(replace(one, is_repeated=True))
                 known, least = known + moved(one.effect), tried

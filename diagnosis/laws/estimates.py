@@ -174,13 +174,15 @@ def second_run(learning: Learning, run: Run) -> SecondRun:
     """How well the laws predict another run; raises NotEnoughData."""
     run = with_commanded(without_copies(run))
 
-    def left(known: Array | float) -> float:
-        return error_left(fit_beside(known, run, learning.before.model))
+    def beside(known: Array | float, gross: GrossErrors | None = None) -> Fit:
+        return fit_beside(known, run, learning.before.model, gross)
 
-    is_bound = not all(one.travels for one in learning.laws)
+    learnt, clocked = beside(learning.predicted(run)), None
+    if not all(one.travels for one in learning.laws):
+        clocked = error_left(beside(learning.predicted(run, is_clock_kept=True), learnt.gross))
     return SecondRun(
         touches=len(run),
-        without=left(0.0),
-        learnt=left(learning.predicted(run)),
-        clocked=left(learning.predicted(run, is_clock_kept=True)) if is_bound else None,
+        without=error_left(beside(0.0)),
+        learnt=error_left(learnt),
+        clocked=clocked,
     )

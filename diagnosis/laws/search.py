@@ -136,7 +136,7 @@ def search_law(space: Space, ground: Ground, policy: LawPolicy) -> Searched:
     near = _promising(scored, {(f.bearer.carrier.name, f.drivers): f.evidence for f in one})
     hopeful = [c for score, c in near if score + REFINING * _gain(c, space) > policy.min_score]
     polished = [refined(space, field, c) for c in hopeful] or [c for _, c in near[:1]]
-    polished += [refined(space, field, c) for c in _at_other_carriers(space, field, polished)]
+    polished += [refined(space, field, c) for c in _beside_best(space, field, polished)]
     polished = _at_best_places(space, field, polished)
     polished += _with_edges(space, field, polished)
     polished = [_charged(c, field, policy) for c in _distinct(polished)]
@@ -276,14 +276,19 @@ def _modulated(space: Space, grids: Grids, found: Sequence[Candidate]) -> list[C
     return out
 
 
-def _at_other_carriers(space: Space, field: Field, found: Sequence[Candidate]) -> list[Candidate]:
-    """The best law at the carriers that come next: not each of them had its formulas."""
+def _beside_best(space: Space, field: Field, found: Sequence[Candidate]) -> list[Candidate]:
+    """The best law at the carriers that come next, of which not each had its formulas.
+
+    Of a product each factor alone besides: a saw-tooth over time was found only times an
+    exponential that hardly changed.
+    """
     best = max(found, key=lambda c: c.score, default=None)
     if best is None:
         return []
     parts = [_part(best.law, i) for i in range(len(best.law.factors))]
     others = [candidate(space, field, b, parts) for b in field.bearers if b is not best.bearer]
-    return sorted(others, key=lambda c: -c.score)[:PER_DRIVER]
+    alone = [candidate(space, field, best.bearer, [part]) for part in parts if len(parts) > 1]
+    return [*sorted(others, key=lambda c: -c.score)[:PER_DRIVER], *alone]
 
 
 def _distinct(found: Sequence[Candidate]) -> list[Candidate]:

@@ -1,5 +1,7 @@
 """Laws as effects: shapes by hand, carriers by hand, names that lead back."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from made_up import made_up
@@ -40,6 +42,14 @@ def test_shapes_are_what_their_formulas_say() -> None:
     assert one("hysteresis", [0.0, 3.0, 2.0], 1.0, 1.0) == pytest.approx([0.0, 1.0, 0.0])
     quarter = [v[0] for v in SHAPES["sine"].values(np.array([1.0]), 4.0)]
     assert quarter == pytest.approx([1.0, 0.0], abs=1e-12)
+
+
+def test_a_temperature_that_turns_once_has_no_trend_that_says_more_than_the_time() -> None:
+    touches = made_up("hsm600u")
+    at = np.linspace(0.0, 1.0, len(touches))
+    once, twice = at * (1.0 - at), np.sin(3.0 * np.pi * at)
+    names = [d.name for d in drivers(replace(touches, temperature={"a": once, "b": twice}))]
+    assert [n for n in names if n.startswith("trend-")] == ["trend-T-b"]
 
 
 def test_a_play_follows_only_while_it_is_pushed() -> None:

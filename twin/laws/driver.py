@@ -112,6 +112,9 @@ def drivers(touches: Touches) -> list[Driver]:
         values = driver.values(touches)
         if not np.all(np.isfinite(values)) or np.ptp(values) <= 1e-6 * max(driver.scale, 1e-9):
             continue
+        # a temperature that turns once says no more than an instant, and hid a step over time
+        if driver.name.startswith(TREND) and _turns(values) < 2:
+            continue
         # a second name of the same variable, such as the time since the only set-up, says nothing
         if any(np.array_equal(values, other) for other in seen):
             continue
@@ -162,6 +165,11 @@ def _trend(values: Array) -> Array:
     half = TREND_TOUCHES // 2
     padded = np.pad(values, half, mode="edge")
     return np.asarray(np.sign(padded[2 * half :] - padded[: -2 * half]))
+
+
+def _turns(trend: Array) -> int:
+    """How often a record rises after it fell, or falls after it rose."""
+    return int(np.count_nonzero(np.diff(trend[trend != 0.0])))
 
 
 def _on_ball(touches: Touches) -> tuple[Array, Array]:
