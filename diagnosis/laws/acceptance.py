@@ -60,16 +60,14 @@ def stands_beside_memory(
     start: Beginning,
     laws: Sequence[Law],
     law: Law,
-    score: float,
-    white: tuple[Fit, Fit],
+    charge: float,
     policy: LawPolicy,
 ) -> bool:
     """Whether a law explains more than noise does that remembers, where there is such noise."""
     if start.memory is None:
         return True
-    charged = log_odds(white[1], white[0], 0.0) - score
     after = start.fitted([*laws, law])
-    return log_odds(after, start.fitted(laws, gross=after.gross), charged) > policy.min_score
+    return log_odds(after, start.fitted(laws, gross=after.gross), charge) > policy.min_score
 
 
 def memory_left(fit: Fit, before: Memory) -> Memory | None:
