@@ -336,8 +336,8 @@ def _curves(
     for f in one:
         if f.length > 0.0:  # else the variable is a direction, or has two values
             score = f.evidence - policy.tried_singles
-            size = (f.length, f.size)
-            out.append(_curve(field, f.bearer, f.drivers[0], size, f.explained, score))
+            own = (f.length, f.size)
+            out.append(_curve(field, f.bearer, f.drivers[0], own, f.explained, score))
     products = [c for c in formulas if len(c.law.factors) == 2][:3]
     for c in products:
         for kept, other in ((0, 1), (1, 0)):

@@ -421,7 +421,10 @@ def test_a_scan_ranks_points_as_least_squares_do(stylus) -> None:
 
 def test_no_curve_is_offered_over_a_direction(stylus) -> None:
     """A temperature rises, falls or stays: three values, but no curve through them."""
-    space, ground = Space.of(stylus[2].before), Ground.of(stylus[2].before.run)
+    run = stylus[2].before.run
+    cycles = np.clip(np.sin(np.linspace(0.0, 9.0, len(run))), -0.5, 0.5)
+    touches = replace(run.touches, temperature={"room": 20.0 + cycles})
+    space, ground = Space.of(stylus[2].before), Ground.of(replace(run, touches=touches))
     every = by_evidence(space, ground.curves)
     signs = [f for f in every if f.drivers[0].nature == "sign"]
     assert any(len(np.unique(ground.field.x[f.drivers[0].name])) == 3 for f in signs)
