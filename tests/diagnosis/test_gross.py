@@ -49,12 +49,12 @@ def test_a_crowd_is_not_a_row_of_accidents() -> None:
     assert gross.rows[62:68].sum() == 0
 
 
-def test_held_out_touches_stay_out(simulated) -> None:
-    case = simulated(11, "hsm600u", hard=True)
-    allowed = np.ones(len(case.run), dtype=bool)
+def test_held_out_touches_stay_out(case) -> None:
+    hard = case(11, "hsm600u", hard=True)
+    allowed = np.ones(len(hard.run), dtype=bool)
     allowed[::3] = False
-    X = ordinary_model(case.run.touches.chain).columns(case.run.touches) / (0.6 * UM) * 0.05
-    fit, gross = find_gross(X, case.run.deviation / (0.6 * UM), allowed)
+    X = ordinary_model(hard.run.touches.chain).columns(hard.run.touches) / (0.6 * UM) * 0.05
+    fit, gross = find_gross(X, hard.run.deviation / (0.6 * UM), allowed)
     assert not gross.rows[::3].any()
     assert len(fit.residual) == int(allowed.sum()) - int(gross.rows.sum())
 
