@@ -9,17 +9,18 @@ from programs import as_read, left_log
 from unchanged import facts, folded
 
 from matstd.artefact.brief import read_project
-from matstd.artefact.reach import DatumBall, Workshop
+from matstd.artefact.reach import DatumBall, Solid, Workshop
 from matstd.probe_paths.campaign import ball_changes, check_moves, effective_radii
 from matstd.probe_paths.control import Move, read_log
 from matstd.probe_paths.emit import make_ball, make_programs
 from matstd.probe_paths.linuxcnc import shortened
 from matstd.probe_paths.locate import planned_again
 from matstd.probe_paths.locate.beside import plan_ball
+from matstd.probe_paths.plan.heading import rounded_workshop
 from matstd.report.words import ball_lines
 from matstd.twin.errors import BadFile, DesignError
 from matstd.twin.frames import pose, rotation
-from matstd.twin.units import NM, UM
+from matstd.twin.units import DEG, NM, UM
 
 BALL = DatumBall(x=118.0, y=20.0, z=70.0, radius=12.5, stem=5.0, low=0.0, u=0.25 * UM)
 
@@ -94,6 +95,18 @@ def measuring(beside, chain):
 
 def test_program_and_log_of_the_ball_are_what_they_were(made, program, logged, unchanged):
     unchanged("\n".join([folded(made.programs[0].text), folded(facts((program.steps, logged())))]))
+
+
+def test_a_workshop_is_rounded_to_what_a_program_states():
+    """Lengths to 1 µm, turns to 0.001 degrees (17.18873 is 0.3 rad), the ball to 1 nm."""
+    clamp = Solid("CLAMP", (20.00049, 15.00051), False, 0.1234, 30.9876, 1.00061, -2.00039, 0.3)
+    ball = replace(BALL, x=118.12345678, radius=12.5000004)
+    made = rounded_workshop(Workshop(bodies=(clamp,), ball=ball))
+    (body,) = made.bodies
+    assert body.half_size == (20.0, 15.001)
+    assert (body.low, body.high, body.x, body.y) == (0.123, 30.988, 1.001, -2.0)
+    assert body.turn == pytest.approx(17.189 * DEG, rel=1e-12)
+    assert (made.ball.x, made.ball.radius, made.ball.u) == (118.123457, 12.5, BALL.u)
 
 
 def test_programs_that_measure_keep_clear_of_it(measuring, small, chain):
