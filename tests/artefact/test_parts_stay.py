@@ -129,7 +129,10 @@ def test_what_touches_show_is_what_it_was(criterion, upright, touches, unchanged
     rows = criterion.rows(touches), criterion.known_rows(touches), criterion.whitened(tried)
     curve = touch_curve(criterion, "", touches, counts=(20, 60))
     few, normals = library.effects[::5], task_normals(criterion, tried, rng)
-    proofs = [proof_power(here, many, tried[::4], few, rng, n) for n in (None, normals)]
+    proofs = [
+        proof_power(here, joined([many, tried[::2]]), tried[1::2], few, rng, n)
+        for n in (None, normals)
+    ]
     seen = library.shown(criterion, joined([touches, tried]))
     shown = [effect.name for effect in library.effects], seen
     unchanged(facts((scan.u, power, some, shown, proofs, rows, curve, at)))
