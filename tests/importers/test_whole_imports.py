@@ -216,6 +216,7 @@ IMPORTS = {
     "oriented": ("oriented.csv --arm --dh dh.csv --u-um 10 --u-urad 40", arm(is_oriented=True)),
     "stated-arm": ("stated-arm.csv --arm --dh dh.csv --modified --u-um 10", arm()),
     "mapped": ("mapped.csv --map map.toml", BENCH),
+    "channels": ("channels.json --map channels.toml", channels()),
     "clocks": ("clocks.csv --map clocks.toml", CLOCKS),
 }
 
@@ -226,7 +227,8 @@ def test_a_whole_import(name, tmp_path, monkeypatch, capsys, unchanged) -> None:
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("COLUMNS", "100")
     given = {words.split()[0]: text, "dh.csv": DH, "map.toml": MAP, "bench.toml": BENCH_MACHINE}
-    given |= {"clocks.toml": CLOCK_MAP}
+    seconds = MAP.replace('{ from = "minutes", factor = 60.0 }', '{ from = "time [s]" }')
+    given |= {"clocks.toml": CLOCK_MAP, "channels.toml": seconds}
     given |= {"machine.toml": read_text(machine_file("hsm600u"))}
     for file, content in given.items():
         (tmp_path / file).write_text(content, encoding="utf-8")

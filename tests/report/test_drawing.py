@@ -32,20 +32,15 @@ def test_the_whole_sheet(drawn, unchanged) -> None:
     unchanged(parts_of(drawn.figure) + "\n")
 
 
-def test_the_whole_sheet_of_a_large_face(upright, unchanged) -> None:
-    """Which has a section of its own."""
-    face = graph_patch(
-        "FF1", pose(t=np.array([0, 0, 52.0])), (55.0, 45.0), waves(1, 6.0), (5, 5), 44.0
-    )
+def test_the_whole_sheet_of_a_large_hard_face_and_parts(upright, unchanged) -> None:
+    """The face has a section of its own."""
+    at, size = pose(t=np.array([0.0, 0.0, 52.0])), (55.0, 45.0)
+    face = graph_patch("FF1", at, size, waves(1, 6.0), (5, 5), 44.0)
     balls = tuple(replace(s, centre=s.centre * [1.15, 1.4, 1.0]) for s in upright.spheres)
-    wide = replace(upright, patches=(face,), spheres=balls)
-    unchanged(parts_of(draw_sheet(wide, details_of(wide), ISSUER).figure) + "\n")
-
-
-def test_the_whole_sheet_of_a_hard_standard_of_parts(upright, unchanged) -> None:
-    hard = replace(upright, material=replace(upright.material, hardness="50 to 54 HRC"))
+    hard = replace(upright.material, hardness="50 to 54 HRC")
+    wide = replace(upright, patches=(face,), spheres=balls, material=hard)
     issuer = replace(ISSUER, approved="B. A", date="2026-11-23", make=Construction.PARTS)
-    unchanged(parts_of(draw_sheet(hard, details_of(hard), issuer).figure) + "\n")
+    unchanged(parts_of(draw_sheet(wide, details_of(wide), issuer).figure) + "\n")
 
 
 def words_of(sheet):
