@@ -27,24 +27,6 @@ def test_lines_fit_the_console(capsys) -> None:
     assert max(len(line) for line in capsys.readouterr().out.splitlines()) <= 80
 
 
-def test_one_kind_states_its_whole_story(answer) -> None:
-    out = " ".join(answer(["effects", "gravity(EBB)"]).split())
-    for phrase in ("cantilever under a load", "E = a sin 2q", "off the centre of the table"):
-        assert phrase in out
-    assert "backlash" not in out
-    assert "Attributes" not in out
-
-
-def test_kinds_are_found_by_any_word_for_them(answer) -> None:
-    out = answer(["effects", "spindle", "growth"])
-    assert out.startswith("thermal-lag(symbol[,sensor, spindle_rpm or V_column])  spindle growth")
-    assert "cold at time zero" in " ".join(out.split())
-    out = answer(["effects", "growth"])
-    assert "thermal-lag(" in out
-    assert "thermal-expansion(" in out
-    assert "backlash" not in out
-
-
 def test_unknown_kind_is_one_line(refusal) -> None:
     error = refusal(["effects", "flux", "capacitor"])
     assert error.count("\n") == 1

@@ -9,11 +9,6 @@ from matstd.commands.machine.examples import EXAMPLES
 from matstd.twin.files import read_run
 
 
-def test_the_list_names_every_example(answer):
-    said = answer(["examples"])
-    assert all(name in said for name in EXAMPLES)
-
-
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_a_copy_has_what_the_next_command_reads(name, tmp_path, answer):
     folder = tmp_path / "copy"

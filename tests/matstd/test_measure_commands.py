@@ -46,19 +46,6 @@ def folder(tmp_path_factory):
     return place
 
 
-def test_sizes_and_what_is_left_are_said_in_words(folder, tmp_path, answer, monkeypatch) -> None:
-    monkeypatch.setenv("COLUMNS", "100")
-    run = str(folder / "run.csv")
-    lines = answer(["diagnose", run, "-o", str(tmp_path / "out"), *NARROW]).splitlines()
-    assert lines[0].startswith(
-        "missing effect: The model lacks one effect: reversal of Y (amplitude"
-    )
-    assert "[backlash(Y)]. With it" in lines[0]
-    (row,) = [line for line in lines if line.startswith(" reversal of Y ")]
-    assert "±" in row
-    assert "µm" in row
-
-
 @pytest.mark.parametrize(
     ("old", "new", "expected"),
     [

@@ -44,13 +44,6 @@ def test_a_machine_without_errors_lists_what_it_can_have(tmp_path, capsys):
     assert "--force" in capsys.readouterr().err
 
 
-def test_errors_and_a_program(tmp_path, part, capsys):
-    code, out = shown(tmp_path, "--errors", ERRORS, "--program", str(part), "--datum", "Z=-400")
-    assert code == 0
-    assert "3 errors of hsm600u-errors.toml" in capsys.readouterr().out
-    assert "Plays part.ngc" in out.read_text(encoding="utf-8")
-
-
 @pytest.mark.parametrize(
     ("program", "found"),
     [
