@@ -103,7 +103,7 @@ def most_read(tables: Sequence[Sheet], readings: Callable[[Sheet], int], axis: s
             sheet.used.clear()
         return count >= 0, (named == axis) - (named not in ("", axis)), count, sheet.count
 
-    return tables[0] if len(tables) == 1 else max(tables, key=rank)
+    return max(tables, key=rank)
 
 
 def _workbook(path: Path, name: str | None, names: Sequence[str]) -> list[Sheet]:
