@@ -239,6 +239,7 @@ def test_travels_are_those_of_the_joints_not_of_the_log(tmp_path):
         assert chain.link(axis).range == (-np.pi, np.pi)
     chain, _ = arm_from_dh(read_sheet(tmp_path / "dh.csv"), q + 3.0 * (np.arange(6) == 5))
     assert chain.link(chain.programmed_axes[5]).range == (-2.0 * np.pi, 2.0 * np.pi)
+    assert chain.link(chain.programmed_axes[4]).range == (-np.pi, np.pi)
     limited = "\n".join(
         line + (",min,max" if k == 0 else ",-45,45") for k, line in enumerate(DH.splitlines())
     )
