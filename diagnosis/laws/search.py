@@ -136,7 +136,7 @@ def search_law(space: Space, ground: Ground, policy: LawPolicy) -> Searched:
     near = _promising(scored, {(f.bearer.carrier.name, f.drivers): f.evidence for f in one})
     hopeful = [c for score, c in near if score + REFINING * _gain(c, space) > policy.min_score]
     polished = [refined(space, field, c) for c in hopeful] or [c for _, c in near[:1]]
-    polished += [refined(space, field, c) for c in _beside_best(space, field, polished)]
+    polished += _beside_best(space, field, polished)
     polished = _at_best_places(space, field, polished)
     polished += _with_edges(space, field, polished)
     polished = [_charged(c, field, policy) for c in _distinct(polished)]
@@ -290,7 +290,7 @@ def _beside_best(space: Space, field: Field, found: Sequence[Candidate]) -> list
     for own in (parts, *([part] for part in parts if len(parts) > 1)):
         others = [candidate(space, field, bearer, own) for bearer in field.bearers]
         out += sorted(others, key=lambda c: -c.score)[: PER_DRIVER + 1]
-    return out
+    return [refined(space, field, c) if c.score > best.score - FAR else c for c in out]
 
 
 def _distinct(found: Sequence[Candidate]) -> list[Candidate]:
