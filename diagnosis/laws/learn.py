@@ -12,6 +12,7 @@ from matstd.diagnosis.laws.acceptance import (
     held_out,
     holds_between,
     holds_elsewhere,
+    holds_where_largest,
     memory_left,
     memory_score,
     predicts_better,
@@ -231,6 +232,7 @@ def _refusal(
     if best.score < policy.min_score:
         return Refusal.CHANCE
     holds = holds_between(*white, best.law) and holds_elsewhere(*white, best.law)
+    holds = holds and holds_where_largest(*white, best.law, policy)
     if not holds or not predicts_better(*white):
         return Refusal.PREDICTION
     if not stands_beside_memory(start, laws, best.law, best.charge, policy):

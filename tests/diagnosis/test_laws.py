@@ -250,6 +250,14 @@ def test_laws_are_learnt_in_the_place_of_imitators_alone(slipped) -> None:
     assert 1.0 < named <= len(searched.found[0].parameters)
 
 
+def test_a_formula_that_grows_into_a_corner_is_not_taken_for_a_wave_along_a_diagonal() -> None:
+    """It predicted a second run, which went farther into it, with 1.63 um instead of 1.04."""
+    texts = law_case(np.random.default_rng([71102, 14]), "fork", "diagonal")
+    run, second = (read_back(text, MACHINES["fork"]) for text in texts[:2])
+    found = second_run(learn_laws(run), second)
+    assert found.learnt < 1.02 * found.without
+
+
 def test_a_law_is_charged_its_parameters_and_the_choice_among_many(stylus) -> None:
     """An amplitude and an instant, half a log of the observations each; a shape of one variable."""
     found = stylus[2]
