@@ -265,10 +265,10 @@ def _rotary(fit: Fit, theta: Array, axis: str) -> Iterator[Functional]:
     if not is_unseen:
         yield from _zero(fit, link, reach)
     for component, curve in sorted(_curves(fit, _along_axis(fit, axis), link).items()):
+        if not np.any(np.round(curve @ theta, 12)):  # nothing that was measured feels it
+            continue
         is_angle = component >= 3
         weights = peak_to_valley(curve, theta)
-        if not np.any(weights):  # nothing that was measured feels it
-            continue
         yield Functional(
             quantity=Quantity.ROTARY_MOTION,
             symbol=f"E{LETTERS[component]}{axis}",
