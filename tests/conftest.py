@@ -162,10 +162,25 @@ def _library_kept() -> Iterator[None]:
         register.update(before)
 
 
+@pytest.fixture(scope="session", autouse=True)
+def _library_at_first():
+    """The library before any test: the files of the session's fixtures register their effects."""
+    from matstd.twin.library import catalogue
+
+    return dict(catalogue._REGISTER), dict(catalogue._FILES)
+
+
 @pytest.fixture(scope="module", autouse=True)
-def _library_as_before_the_file():
+def _library_as_before_the_file(_library_at_first):
     """What the fixtures of a file register, commands that they run for one."""
+    from matstd.twin.library import catalogue
+
     with _library_kept():
+        for register, first in zip(
+            (catalogue._REGISTER, catalogue._FILES), _library_at_first, strict=True
+        ):
+            register.clear()
+            register.update(first)
         yield
 
 
