@@ -112,6 +112,9 @@ def _probe(ax: Any, plan: TouchPlan) -> None:
     plain(ax)
 
 
+_PER_MM = 0.14  # of the length of an arrow, so that it is 7 mm long
+
+
 def draw_touches(plan: TouchPlan) -> Figure:
     """Touched points on the standard from above and from the side, coloured by kind of feature."""
     drawn = figure(4.4)
@@ -132,11 +135,12 @@ def draw_touches(plan: TouchPlan) -> Figure:
                 color=colour,
                 angles="xy",
                 scale_units="xy",
-                scale=0.14,
+                scale=_PER_MM,
                 width=0.0022,
                 headwidth=3.5,
                 label=f"{label}: {rows.sum()} touches",
             )
+            ax.update_datalim((p + n / _PER_MM)[:, [i, j]])  # no arrow leaves the picture
         ax.set(aspect="equal", xlabel="x in mm", ylabel=f"{'xyz'[j]} in mm")
         plain(ax)
     top.set_title("from above", loc="left")
