@@ -103,7 +103,8 @@ def most_read(tables: Sequence[Sheet], readings: Callable[[Sheet], int], axis: s
             sheet.used.clear()
         return count >= 0, (named == axis) - (named not in ("", axis)), count, sheet.count
 
-    return max(tables, key=rank)
+    # the only one is not read twice
+    return tables[0] if len(tables) == 1 else max(tables, key=rank)
 
 
 def _workbook(path: Path, name: str | None, names: Sequence[str]) -> list[Sheet]:
