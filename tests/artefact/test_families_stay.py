@@ -55,9 +55,9 @@ def built():
             site = families.site_of(
                 brief, criterion, places, bodies, others.of_balls, poses, lambda *_: None
             )
-            chosen, told = families.built_family(site)
+            chosen, judged = families.built_family(site)
             rivals = others.all()
-    return made, told, chosen.family, rivals, site
+    return made, judged, chosen.family, rivals, site
 
 
 def test_the_figures_are_what_they_were(built, unchanged: Unchanged) -> None:

@@ -161,8 +161,8 @@ def test_criteria_are_what_they_were(criterion, touches, unchanged) -> None:
 def test_what_is_identifiable_is_what_it_was(criterion, touches, unchanged) -> None:
     report = identifiability_report(criterion, touches, np.random.default_rng(5))
     alike = [(f.parameter, f.reason, f.resolution, len(f.alike)) for f in report.gauge.freedoms]
-    told = replace(report, model=None, freedoms=(), gauge=replace(report.gauge, freedoms=alike))
-    unchanged(folded(facts(told)))
+    shown = replace(report, model=None, freedoms=(), gauge=replace(report.gauge, freedoms=alike))
+    unchanged(folded(facts(shown)))
 
 
 @pytest.mark.parametrize("name", ["hsm600u", "wavy_face"])

@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from bench import part_program
+from bench import DRILL, part_program
 from rs274 import interpreted, is_there
 
 from matstd.compensation.programs import compensated
@@ -170,15 +170,6 @@ def test_tool_point_control_has_three_names(frame, tmp_path):
 
 
 # --- Klartext -------------------------------------------------------------------------------------
-
-DRILL = """CYCL DEF 200 DRILLING ~
-    Q200=+2    ;SET-UP CLEARANCE ~
-    Q201=-15   ;DEPTH {of the hole} ~
-    Q206=+150  ;FEED ~
-    Q202=+5 ~
-    Q203=-1.5  ;SURFACE ~
-    Q204=+20
-"""
 
 
 def test_holes_of_klartext(frame, known, head, tmp_path):

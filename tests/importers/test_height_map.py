@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from foreign_tables import KLIPPER
 
 from matstd.importers import read_sheet
 from matstd.importers.points import read_points
@@ -19,34 +20,6 @@ HEADS = {
     ),
 }
 MATRIX = "  0.011,  0.021,      0\n -0.012,  0.000, -0.032\n  0.013,  0.023,  0.033\n"
-KLIPPER = """[printer]
-kinematics: corexy
-#*# <---------------------- SAVE_CONFIG ---------------------->
-#*# [bed_mesh cold]
-#*# version = 1
-#*# points =
-#*# \t  -1.10, -1.20, -1.30
-#*# \t  -1.40, -1.50, -1.60
-#*# x_count = 3
-#*# min_x = 10.0
-#*# max_x = 50.0
-#*# y_count = 2
-#*# min_y = 30.0
-#*# max_y = 90.0
-#*#
-#*# [bed_mesh hot]
-#*# points =
-#*# \t  -1.0, -1.1
-#*# \t  -1.2, -1.3
-#*# x_count = 2
-#*# min_x = 10.0
-#*# max_x = 50.0
-#*# y_count = 2
-#*# min_y = 30.0
-#*# max_y = 90.0
-#*# [extruder]
-#*# pid_kp = 22
-"""
 
 
 def reprap(head: str) -> str:

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from foreign_tables import SPINDLE, SPINDLE_MACHINE, SPINDLE_MAP
 
 from matstd.importers import read_sheet
 from matstd.importers.files import mapped_run
@@ -10,54 +11,12 @@ from matstd.twin.errors import BadFile
 from matstd.twin.files import read_run
 from matstd.twin.units import UM
 
-MACHINE = """format = "machine/1"
-name = "mill"
-chain = "[w f X Y Z t]"
-[axis.X]
-range = [-200.0, 200.0]
-[axis.Y]
-range = [-200.0, 200.0]
-[axis.Z]
-range = [-200.0, 200.0]
-"""
-TABLE = """Spindeltest;;;;
-Uhrzeit;Winkel [°];X1 [µm];Y1 [µm];Z [µm]
-23:58:00;0,0;1,0;2,0;3,0
-23:59:30;90,0;1,5;;3,5
-00:01:00;180,0;2,0;4,0;4,0
-"""
-MAP = """format = "import/1"
-[head]
-machine = "machine.toml"
-instrument = "dial-gauge"
-probe = { radius_mm = 0.0, length_mm = 0.0 }
-u_um = 0.1
-[columns]
-time_s = { from = "Uhrzeit" }
-X_mm = { from = "Winkel [°]", of = "cos", factor = 150.0 }
-Y_mm = { from = "Winkel [°]", of = "sin", factor = 150.0 }
-Z_mm = 0.0
-px_mm = 0.0
-py_mm = 0.0
-pz_mm = 0.0
-[[rows]]
-nx = 1.0
-ny = 0.0
-nz = 0.0
-dev_um = { from = "X1 [µm]" }
-[[rows]]
-nx = 0.0
-ny = 1.0
-nz = 0.0
-dev_um = { from = "Y1 [µm]", factor = -1.0 }
-"""
-
 
 @pytest.fixture
 def folder(tmp_path):
-    for name, text in (("machine.toml", MACHINE), ("map.toml", MAP)):
+    for name, text in (("machine.toml", SPINDLE_MACHINE), ("map.toml", SPINDLE_MAP)):
         (tmp_path / name).write_text(text, encoding="utf-8")
-    (tmp_path / "table.csv").write_text(TABLE, encoding="utf-16")
+    (tmp_path / "table.csv").write_text(SPINDLE, encoding="utf-16")
     return tmp_path
 
 
@@ -76,7 +35,7 @@ def test_a_row_of_five_probes_is_as_many_rows_of_one_pose(folder, answer):
 
 def test_a_row_with_one_reading_is_one_row(folder):
     """Without `[[rows]]`; one cell of its column is empty."""
-    head, first, _ = MAP.replace('"X1 [µm]"', '"Y1 [µm]"').split("[[rows]]\n")
+    head, first, _ = SPINDLE_MAP.replace('"X1 [µm]"', '"Y1 [µm]"').split("[[rows]]\n")
     (folder / "map.toml").write_text(head + first, encoding="utf-8")
     text, left_out = mapped_run(read_sheet(folder / "table.csv"), folder / "map.toml")
     rows = [line for line in text.splitlines() if not line.startswith("#")]
@@ -93,7 +52,7 @@ def test_a_row_with_one_reading_is_one_row(folder):
     ],
 )
 def test_mistakes_name_their_key(folder, old, new, found):
-    (folder / "map.toml").write_text(MAP.replace(old, new), encoding="utf-8")
+    (folder / "map.toml").write_text(SPINDLE_MAP.replace(old, new), encoding="utf-8")
     with pytest.raises(BadFile, match=found):
         mapped_run(read_sheet(folder / "table.csv"), folder / "map.toml")
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from foreign_tables import BLANKS, CHARACTERISTICS, DIRECTIONS
 
 from matstd.cli import main
 from matstd.importers import read_sheet
@@ -9,20 +10,6 @@ from matstd.importers.points import read_points
 from matstd.twin.errors import BadFile
 from matstd.twin.files import read_run
 from matstd.twin.units import UM
-
-CHARACTERISTICS = """planid\tpartnb\tid\ttype\tidsymbol\tactual\tnominal\tuppertol\tdeviation
-4711\t1\tX-Wert_Bohrung_01\tcartesian\tx\t19.971\t20.000\t0.05\t-0.029
-4711\t1\tX-Wert_Bohrung_02\tcartesian\tx\t94.966\t95.000\t0.05\t-0.034
-4711\t1\tY-Wert_Bohrung_01\tcartesian\ty\t15.011\t15.000\t0.05\t0.011
-4711\t1\tDurchmesser_Bohrung_01\tdiameter\tD\t10.010\t10.000\t0.05\t0.010
-4711\t1\tY-Wert_Bohrung_02\tcartesian\ty\t15.007\t15.000\t0.05\t0.007
-"""
-DIRECTIONS = """name;x nom [mm];y nom [mm];x ist [mm];y ist [mm];Anfahrrichtung Y;Prüfer
-H1;0,0;0,0;0,000;0,004;+;Huber
-H2;100,0;0,0;100,010;-0,003;-;Huber
-H3;0,0;100,0;-0,002;100,004;+;Maier
-H4;100,0;100,0;100,000;99,996;-;Maier
-"""
 
 
 @pytest.fixture
@@ -64,16 +51,6 @@ def test_lists_of_several_years_are_runs_in_their_order(imported, capsys):
     assert run.touches.feature[run.touches.run == 1].tolist() == [
         f"L{k // 2 + 1}" for k in range(8)
     ]
-
-
-BLANKS = """Plate 17
-Date: 2005-03-15
-
-    Meas X    Meas Y     Nom X     Nom Y     Err X  Round
-   -61.316   140.212   -61.302   140.215    -0.014  0.005
-    19.998    99.991    20.000   100.000    -0.002  0.003
-     0.003     0.001     0.000     0.000     0.003  0.004
-"""
 
 
 @pytest.mark.parametrize(

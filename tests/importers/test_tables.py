@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import openpyxl
 import pytest
+from foreign_tables import REPORT
 
 from matstd.cli import main
 from matstd.diagnosis.answer import diagnose
@@ -474,18 +475,6 @@ def test_a_log_of_two_encoders(tmp_path):
         read_positioning(sheet, "X")
     with pytest.raises(BadFile, match="no column 'motro'"):
         read_positioning(sheet, "X", named=("motro", "scale"))
-
-
-REPORT = """Feature,Axis,Nominal,Actual,Dev
-HOLE1,,,,
-,X,0.000,0.001,0.001
-,Y,0.000,0.002,0.002
-,D,10.000,10.010,0.010
-HOLE2,,,,
-,X,100.000,100.010,0.010
-,Y,50.000,49.995,-0.005
-,D,10.000,10.008,0.008
-"""
 
 
 def test_a_report_with_a_row_a_coordinate(tmp_path):

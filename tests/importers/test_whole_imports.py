@@ -6,6 +6,16 @@ from itertools import product
 import numpy as np
 import pytest
 from foreign_cases import BENCH, DH, ENCODERS, HOLES, LASER, MAP
+from foreign_tables import (
+    BLANKS,
+    CHARACTERISTICS,
+    DIRECTIONS,
+    KLIPPER,
+    REPORT,
+    SPINDLE,
+    SPINDLE_MACHINE,
+    SPINDLE_MAP,
+)
 from scipy.spatial.transform import Rotation
 from written import folder_text
 
@@ -77,103 +87,12 @@ def channels() -> str:
     return "\n".join(json.dumps(line) for line in lines)
 
 
-POINTS = """Plate 17
-Date: 2005-03-15
-
-    Meas X    Meas Y     Nom X     Nom Y     Err X  Round
-   -61.316   140.212   -61.302   140.215    -0.014  0.005
-    19.998    99.991    20.000   100.000    -0.002  0.003
-     0.003     0.001     0.000     0.000     0.003  0.004
-"""
-CHARACTERISTICS = """planid\tid\ttype\tidsymbol\tactual\tnominal\tuppertol\tdeviation
-4711\tX-Wert_Bohrung_01\tcartesian\tx\t19.971\t20.000\t0.05\t-0.029
-4711\tX-Wert_Bohrung_02\tcartesian\tx\t94.966\t95.000\t0.05\t-0.034
-4711\tY-Wert_Bohrung_01\tcartesian\ty\t15.011\t15.000\t0.05\t0.011
-4711\tDurchmesser_Bohrung_01\tdiameter\tD\t10.010\t10.000\t0.05\t0.010
-4711\tY-Wert_Bohrung_02\tcartesian\ty\t15.007\t15.000\t0.05\t0.007
-"""
-DIRECTIONS = """name;x nom [mm];y nom [mm];x ist [mm];y ist [mm];Anfahrrichtung Y;Prüfer
-H1;0,0;0,0;0,000;0,004;+;Huber
-H2;100,0;0,0;100,010;-0,003;-;Huber
-H3;0,0;100,0;-0,002;100,004;+;Maier
-H4;100,0;100,0;100,000;99,996;-;Maier
-"""
-AXES = """Feature,Axis,Nominal,Actual,Dev
-P1,X,0.000,0.004,0.004
-P1,Y,50.000,49.997,-0.003
-P2,X,80.000,80.006,0.006
-P2,Y,50.000,50.001,0.001
-"""
 HEIGHTS = """RepRapFirmware height map file v2 generated at 2020
 xmin,xmax,ymin,ymax,radius,xspacing,yspacing,xnum,ynum
 -20,20,5,45,-1,20.00,20.00,3,3
   0.011,  0.021,      0
  -0.012,  0.000, -0.032
   0.013,  0.023,  0.033
-"""
-PRINTER = """[printer]
-#*# [bed_mesh cold]
-#*# version = 1
-#*# points =
-#*# \t  -1.10, -1.20, -1.30
-#*# \t  -1.40, -1.50, -1.60
-#*# x_count = 3
-#*# min_x = 10.0
-#*# max_x = 50.0
-#*# y_count = 2
-#*# min_y = 30.0
-#*# max_y = 90.0
-#*# [bed_mesh hot]
-#*# points =
-#*# \t  -1.0, -1.1
-#*# \t  -1.2, -1.3
-#*# x_count = 2
-#*# min_x = 10.0
-#*# max_x = 50.0
-#*# y_count = 2
-#*# min_y = 30.0
-#*# max_y = 90.0
-"""
-CLOCKS = """Spindeltest;;;;
-Uhrzeit;Winkel [°];X1 [µm];Y1 [µm];Bemerkung
-23:59:00;0;1,0;2,0;
-23:59:30;90;1,5;;kalt
-00:01:00;180;2,0;4,0;
-"""
-CLOCK_MAP = """format = "import/1"
-[head]
-machine = "bench.toml"
-instrument = "dial-gauge"
-probe = { radius_mm = 0.0, length_mm = 0.0 }
-u_um = 0.1
-[columns]
-time_s = { from = "Uhrzeit" }
-X_mm = { from = "Winkel [°]", of = "cos", factor = 150.0 }
-Y_mm = { from = "Winkel [°]", of = "sin", factor = 150.0 }
-Z_mm = 0.0
-px_mm = 0.0
-py_mm = 0.0
-pz_mm = 0.0
-[[rows]]
-nx = 1.0
-ny = 0.0
-nz = 0.0
-dev_um = { from = "X1 [µm]" }
-[[rows]]
-nx = 0.0
-ny = 1.0
-nz = 0.0
-dev_um = { from = "Y1 [µm]", factor = -1.0 }
-"""
-BENCH_MACHINE = """format = "machine/1"
-name = "bench"
-chain = "[w X' Y' f Z t]"
-[axis.X]
-range = [-200, 200]
-[axis.Y]
-range = [-200, 200]
-[axis.Z]
-range = [-100, 0]
 """
 STRAIGHT = table("position [mm],EYX [µm]", UNEVEN, [0.0, 1.2, 2.9, 2.1, 1.4, -0.7])
 ANGLES = table("position [mm],up [µrad],down [µrad]", UNEVEN, UNEVEN / 20.0, UNEVEN / 25.0)
@@ -207,17 +126,17 @@ IMPORTS = {
     "part": ("part.csv --part --u-um 2 --in-order 30", HOLES),
     "standard": ("standard.csv --standard --u-um 2", HOLES),
     "directions": ("directions.csv --part --u-um 2", DIRECTIONS),
-    "blanks": ("blanks.csv --part --u-um 2", POINTS),
+    "blanks": ("blanks.csv --part --u-um 2", BLANKS),
     "characteristics": ("characteristics.csv --part --u-um 2", CHARACTERISTICS),
-    "axes": ("axes.csv --part --u-um 2 --unit mm", AXES),
+    "axes": ("axes.csv --part --u-um 2 --unit mm", REPORT),
     "heights": ("heights.csv --part --u-um 5", HEIGHTS),
-    "meshes": ("meshes.cfg --part --u-um 5", PRINTER),
+    "meshes": ("meshes.cfg --part --u-um 5", KLIPPER),
     "arm": ("arm.csv --arm --dh dh.csv --u-um 10", arm()),
     "oriented": ("oriented.csv --arm --dh dh.csv --u-um 10 --u-urad 40", arm(is_oriented=True)),
     "stated-arm": ("stated-arm.csv --arm --dh dh.csv --modified --u-um 10", arm()),
     "mapped": ("mapped.csv --map map.toml", BENCH),
     "channels": ("channels.json --map channels.toml", channels()),
-    "clocks": ("clocks.csv --map clocks.toml", CLOCKS),
+    "clocks": ("clocks.csv --map clocks.toml", SPINDLE),
 }
 
 
@@ -226,9 +145,10 @@ def test_a_whole_import(name, tmp_path, monkeypatch, capsys, unchanged) -> None:
     words, text = IMPORTS[name]
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("COLUMNS", "100")
-    given = {words.split()[0]: text, "dh.csv": DH, "map.toml": MAP, "bench.toml": BENCH_MACHINE}
+    given = {words.split()[0]: text, "dh.csv": DH, "map.toml": MAP, "spindle.toml": SPINDLE_MACHINE}
     seconds = MAP.replace('{ from = "minutes", factor = 60.0 }', '{ from = "time [s]" }')
-    given |= {"clocks.toml": CLOCK_MAP, "channels.toml": seconds}
+    spindle = SPINDLE_MAP.replace("machine.toml", "spindle.toml")
+    given |= {"clocks.toml": spindle, "channels.toml": seconds}
     given |= {"machine.toml": read_text(machine_file("hsm600u"))}
     for file, content in given.items():
         (tmp_path / file).write_text(content, encoding="utf-8")

@@ -416,8 +416,8 @@ def test_what_the_example_only_mentions_is_accepted(
     assert project.population.mix_of(chain.symbol("EXX")).shapes == ("linear", "sinusoidal")
     assert project.population.ranges.of(chain, chain.symbol("EXC")) == (5.0 * UM, 10.0 * UM)
     named = ("probes", "options", "programs", "study", "task", "blank", "ball", "author", "riser")
-    told = {name: getattr(project, name) for name in named}
-    unchanged(facts((told, project.population.dependence, project.clampings)))
+    stated = {name: getattr(project, name) for name in named}
+    unchanged(facts((stated, project.population.dependence, project.clampings)))
 
 
 def test_blank_and_limits_reach_the_placement(tmp_path: Path) -> None:
