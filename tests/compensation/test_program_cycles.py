@@ -172,6 +172,16 @@ def test_tool_point_control_has_three_names(frame, tmp_path):
 # --- Klartext -------------------------------------------------------------------------------------
 
 
+def test_a_tool_below_the_surface_of_a_hole_rises_before_it_moves_over(frame, tmp_path):
+    """To Q200 above Q203, both from the Z of the call: -5 - 1.5 + 2 mm."""
+    calls = "L Z-6 F500\nCYCL CALL POS X+50 Y+50 Z-5 FMAX\n"
+    found = part_program(START + DRILL + calls, frame, tmp_path)
+    columns = [frame.chain.axis_index(a) for a in "XYZ"]
+    ends = np.array([m.end[columns] for m in found.motions])
+    low = np.flatnonzero(ends[:, 2] == -6.0)[0]
+    np.testing.assert_allclose(ends[low + 1 : low + 3], [[0.0, 0.0, -4.5], [50.0, 50.0, -4.5]])
+
+
 def test_holes_of_klartext(frame, known, head, tmp_path):
     """M99, M89, CYCL CALL, CYCL CALL POS: the surface is shifted, the rest of the cycle stays."""
     calls = "L X+20 Y+10 FMAX M99\nL X+30 R0 FMAX M89\nL Y+40 C+30 FMAX\nL X-10 FMAX M99\n"

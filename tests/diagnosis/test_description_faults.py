@@ -1,20 +1,25 @@
 """Mistakes in the description: planted in the text of the files, named with their figures."""
 
 import re
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from made_up import made_up
 from run_text import every
 from simulator_case import read_back, simulate_case
 
 from matstd.cli import main
 from matstd.diagnosis.faults import Fault, description_faults, faults_of_refused
+from matstd.diagnosis.faults.suspects import recomputed
 from matstd.diagnosis.fit import fit_run
 from matstd.report.geometry import fault_sentences
 from matstd.twin.effects import LocationError
 from matstd.twin.errors import BadFile
 from matstd.twin.library import ordinary_model, parse_effect
+from matstd.twin.record import Run
+from matstd.twin.units import UM
 
 
 @pytest.fixture(scope="module")
@@ -145,3 +150,15 @@ def test_what_a_found_effect_explains_is_no_mistake_of_the_description(pivot) ->
     backlash = parse_effect("backlash(X)", fit.model.chain)
     (again,) = description_faults(fit, beside=[backlash])
     assert (again.fault, again.axes) == (Fault.PIVOT, ("C",))
+
+
+def test_deviations_of_an_instrument_follow_the_readings_that_are_meant() -> None:
+    """A reading 20 µm larger of an axis that carries the tool is 20 µm more along that axis."""
+    t = made_up("hmc1995", 60)
+    run = Run(t, np.random.default_rng(1).normal(0.2, 0.05, 60), np.full(60, UM))
+    np.testing.assert_allclose(recomputed(run, t).deviation, run.deviation, atol=1e-12)
+    q = t.q.copy()
+    q[:, t.chain.axis_index("Y")] += 20.0 * UM
+    moved = recomputed(run, replace(t, q=q)).deviation - run.deviation
+    flat = t.setup == 0  # its frame is that of the machine
+    np.testing.assert_allclose(moved[flat], 20.0 * UM * t.normal[flat, 1], atol=1e-9)
