@@ -8,6 +8,7 @@ import sys
 from collections.abc import Sequence
 
 from matstd.command_line import CommandLine
+from matstd.options import add_options
 
 FOLDERS = {
     "standard": {
@@ -50,8 +51,8 @@ FOLDERS = {
 }
 """Commands by the folder of `matstd/commands` that has their files, with what each does.
 
-The file of a command has `add_arguments(parser)`, which states its arguments, and `run(args)`,
-which does its work and returns the exit code.
+The file of a command has its arguments, `OPTIONS`, and `run(args)`, which does its work and returns
+the exit code; `ABOUT` says more of it than the line here.
 """
 
 COMMANDS = {name: line for folder in FOLDERS.values() for name, line in folder.items()}
@@ -159,7 +160,8 @@ def _parser(arguments: Sequence[str]) -> CommandLine:
             if name == called:
                 file = f"matstd.commands.{folder}.{name.replace('-', '_')}"
                 module = importlib.import_module(file)
-                module.add_arguments(command)
+                command.description = getattr(module, "ABOUT", said)
+                add_options(command, module.OPTIONS)
                 command.set_defaults(run=module.run, parser=command)
     return parser
 

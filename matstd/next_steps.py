@@ -74,10 +74,6 @@ def _run_file(args: Namespace) -> Step:
     return words, "what the model lacks"
 
 
-def _control_test(args: Namespace) -> Step:
-    return called("diagnose", Path(args.output) / "run.csv", AUTO, "-o", "diagnosis"), ""
-
-
 def _replan(args: Namespace) -> Step:
     design = Path(args.design)
     where = ["--standard", design / "standard.toml", "--machine", design / "machine.toml"]
@@ -127,10 +123,6 @@ def _compensate(args: Namespace) -> Step:
         return words, "which errors were corrected along this program"
     why = "after the tables are in the control and the programs have run again"
     return _probed_again(args), why
-
-
-def _serve(args: Namespace) -> Step:
-    return _probed_again(args), "after the programs have run again while it corrects"
 
 
 def _contributions(args: Namespace) -> Step:
@@ -239,14 +231,20 @@ _AFTER: dict[str, Callable[[Namespace], Step]] = {
     "calibrate": _calibrate,
     "uncertainty": _uncertainty,
     "simulate": _run_file,
-    "control-test": _control_test,
+    "control-test": lambda args: (
+        called("diagnose", Path(args.output) / "run.csv", AUTO, "-o", "diagnosis"),
+        "",
+    ),
     "evaluate": _run_file,
     "replan": _replan,
     "import": _run_file,
     "compare": _compare,
     "thermal": _thermal,
     "compensate": _compensate,
-    "serve": _serve,
+    "serve": lambda args: (
+        _probed_again(args),
+        "after the programs have run again while it corrects",
+    ),
     "contributions": _contributions,
     "volumetric": _volumetric,
     "show": _show,

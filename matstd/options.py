@@ -29,7 +29,11 @@ SHEET_FILES = (
 """Of it and of the programs, what not every run leaves."""
 
 
-Options = dict[str, str]  # arguments with their meanings for the help, as `add_options` explains
+Options = dict[str, "str | Options"]
+"""Arguments with their meanings for the help, as `add_options` explains."""
+
+ONE_OF, EXACTLY_ONE = "one of", "exactly one of"
+"""Names of groups of options that exclude each other."""
 
 
 class Required(str):
@@ -45,9 +49,20 @@ def add_options(parser: argparse._ActionsContainer, options: Options) -> None:
 
     Behind the name of an option, `:int` or `:float` is the type of a number, and `:list` lets it be
     repeated. `=1.0` or `=word` holds without the option, for each of several numbers; of
-    `=one|other` one is chosen, the first without the option.
+    `=one|other` one is chosen, the first without the option; of `=|one|other` that is none.
+
+    Options below another key are a group: those of `ONE_OF` and `EXACTLY_ONE` exclude each other,
+    any other group has a heading in the help.
     """
     for form, about in options.items():
+        if isinstance(about, dict):
+            group = (
+                parser.add_mutually_exclusive_group(required=form == EXACTLY_ONE)
+                if form in (ONE_OF, EXACTLY_ONE)
+                else parser.add_argument_group(form)
+            )
+            add_options(group, about)
+            continue
         words = form.split()
         count = sum(word.startswith("-") for word in words)
         flags, shown = words[: count or 1], words[count or 1 :]
@@ -78,7 +93,7 @@ def _taken(shown: Sequence[str], kind: str, default: str | None, is_option: bool
         more["type"] = {"int": int, "float": float}[kind]
     elif default is not None and "|" in default:
         choices = default.split("|")
-        more |= {"choices": choices, "default": choices[0]}
+        more |= {"choices": [*filter(None, choices)], "default": choices[0] or None}
     elif default is not None:
         value = _value(default)
         more |= {"type": type(value), "default": (value,) * len(names) if names[1:] else value}

@@ -1,1 +1,1 @@
-"""One command a file, with `add_arguments(parser)` and `run(args) -> int`, by what it is about."""
+"""One command a file, with `OPTIONS` and `run(args) -> int`, by what it is about."""

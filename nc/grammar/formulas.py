@@ -16,11 +16,6 @@ COMPARISONS: dict[str, Callable[[float, float], bool]] = {
 """Words between the two values of a jump."""
 
 
-def _angle(a: float, b: float) -> float:
-    """FN 13: from an opposite and an adjacent side, 0 to 360 degrees."""
-    return math.degrees(math.atan2(a, b)) % 360.0
-
-
 _ONE: dict[str, tuple[str, Callable[[float], float]]] = {
     "0": ("", lambda a: a),
     "5": ("SQRT ?", math.sqrt),
@@ -35,7 +30,7 @@ _TWO: dict[str, tuple[str, Callable[[float, float], float]]] = {
     "3": (r"\*", operator.mul),
     "4": ("DIV", operator.truediv),
     "8": ("LEN", math.hypot),
-    "13": ("ANG", _angle),
+    "13": ("ANG", lambda a, b: math.degrees(math.atan2(a, b)) % 360.0),  # 0 to 360 degrees
 }
 """Functions FN of two values, with the word between them."""
 

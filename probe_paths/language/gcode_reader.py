@@ -111,8 +111,10 @@ class _Reader:
         """All blocks in the order of the file."""
         while self.i < len(self.lines):
             text = self.lines[self.i]
-            if text.startswith(f"O{g.TOUCH} SUB"):
-                self._touch_body()
+            if text.startswith(f"O{g.TOUCH} SUB"):  # it must agree word for word
+                for expected in g.TOUCH_BODY.split(g.LINE_END):
+                    self._must(expected)
+                self.has_touch = True
             elif text.startswith("(LOGAPPEND"):
                 yield self._printed()
             elif _IF.match(text):
@@ -133,12 +135,6 @@ class _Reader:
         found = self._take(expected)
         if found != expected:
             raise BadFile(self.path, f"line {self.i}", repr(found), expected)
-
-    def _touch_body(self) -> None:
-        """Read the subprogram of a touch, which must agree word for word."""
-        for expected in g.TOUCH_BODY.split(g.LINE_END):
-            self._must(expected)
-        self.has_touch = True
 
     def _test(self) -> Block:
         line, text = self.i + 1, self._take("")

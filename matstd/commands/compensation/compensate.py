@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from matstd.commands.compensation.options import MODEL, PROGRAM, STATE
 from matstd.console import say
-from matstd.options import add_options
+from matstd.options import Options
 from matstd.twin.errors import DesignError
 from matstd.twin.units import UM
 
@@ -16,26 +16,22 @@ if TYPE_CHECKING:
     from matstd.api.compensating import Compensation
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    add_options(
-        parser,
-        {
-            **MODEL,
-            "--tables DIR": "write compensation tables of the controls to this folder",
-            "--program IN": "part program to compensate (.H, .ngc)",
-            "-o --output OUT": "compensated program",
-            "--tolerance:float UM": "largest distance between a path and the line segments that "
-            "replace it, µm (1)",
-            **PROGRAM,
-            "--loads LOADS.csv": "process forces by program line, with --program (--load applies "
-            "to the other lines)",
-            "--control:list NAME": "write only the tables of this control: iso230, sinumerik, "
-            "linuxcnc, heidenhain",
-            "--opposite:list NAME": "reverse the sign of the values in the tables of this control",
-            **STATE,
-            "--force": "replace results of an earlier run",
-        },
-    )
+OPTIONS: Options = {
+    **MODEL,
+    "--tables DIR": "write compensation tables of the controls to this folder",
+    "--program IN": "part program to compensate (.H, .ngc)",
+    "-o --output OUT": "compensated program",
+    "--tolerance:float UM": "largest distance between a path and the line segments that replace "
+    "it, µm (1)",
+    **PROGRAM,
+    "--loads LOADS.csv": "process forces by program line, with --program (--load applies to the "
+    "other lines)",
+    "--control:list NAME": "write only the tables of this control: iso230, sinumerik, linuxcnc, "
+    "heidenhain",
+    "--opposite:list NAME": "reverse the sign of the values in the tables of this control",
+    **STATE,
+    "--force": "replace results of an earlier run",
+}
 
 
 def run(args: argparse.Namespace) -> int:

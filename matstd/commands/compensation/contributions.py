@@ -1,28 +1,21 @@
 """`matstd contributions`: what every error adds along a part program, or at poses."""
 
-from __future__ import annotations
-
 import argparse
 
 from matstd.commands.compensation.options import MODEL, PROGRAM, STATE
 from matstd.console import say
-from matstd.options import add_options, output
+from matstd.options import Options, output
 from matstd.twin.errors import DesignError
 
-
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    add_options(
-        parser,
-        {
-            **MODEL,
-            "--program IN": "part program (.H, .ngc)",
-            **PROGRAM,
-            "--loads LOADS.csv": "process forces by program line",
-            "--poses POSES.csv": "axis readings, one row per pose",
-            **STATE,
-            **output(),
-        },
-    )
+OPTIONS: Options = {
+    **MODEL,
+    "--program IN": "part program (.H, .ngc)",
+    **PROGRAM,
+    "--loads LOADS.csv": "process forces by program line",
+    "--poses POSES.csv": "axis readings, one row per pose",
+    **STATE,
+    **output(),
+}
 
 
 def run(args: argparse.Namespace) -> int:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from matstd.commands.compensation.options import MODEL, STATE
 from matstd.console import say
 from matstd.next_steps import next_line
-from matstd.options import add_options
+from matstd.options import Options
 from matstd.twin.units import NM, UM
 
 if TYPE_CHECKING:
@@ -17,23 +17,18 @@ if TYPE_CHECKING:
     from matstd.compensation.service import OutputLimits, Service
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    add_options(
-        parser,
-        {
-            **MODEL,
-            "--endpoint=opc.tcp://localhost:4840 URL": "address of the OPC UA server "
-            "(opc.tcp://localhost:4840: reachable from this computer only)",
-            "--linuxcnc MACHINE.ini": "correct this LinuxCNC on this computer by external "
-            "offsets, instead of OPC UA",
-            "--most=200.0 UM": "largest correction of an axis, µm (200)",
-            "--rate=1000.0 UM_S": "largest rate of change of a correction, µm/s (1000)",
-            "--patience=0.5 S": "time without readings until a correction is marked invalid, s "
-            "(0.5)",
-            "--hold=5.0 S": "time without readings until a correction returns to zero, s (5)",
-            **STATE,
-        },
-    )
+OPTIONS: Options = {
+    **MODEL,
+    "--endpoint=opc.tcp://localhost:4840 URL": "address of the OPC UA server "
+    "(opc.tcp://localhost:4840: reachable from this computer only)",
+    "--linuxcnc MACHINE.ini": "correct this LinuxCNC on this computer by external offsets, instead "
+    "of OPC UA",
+    "--most=200.0 UM": "largest correction of an axis, µm (200)",
+    "--rate=1000.0 UM_S": "largest rate of change of a correction, µm/s (1000)",
+    "--patience=0.5 S": "time without readings until a correction is marked invalid, s (0.5)",
+    "--hold=5.0 S": "time without readings until a correction returns to zero, s (5)",
+    **STATE,
+}
 
 
 def run(args: argparse.Namespace) -> int:

@@ -6,7 +6,7 @@ import argparse
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from matstd.options import EFFECTS, add_options
+from matstd.options import EFFECTS, Options
 from matstd.twin.errors import UnknownEffect
 
 if TYPE_CHECKING:
@@ -16,15 +16,11 @@ if TYPE_CHECKING:
     from matstd.twin.model import Kind
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    add_options(
-        parser,
-        {
-            "kind [KIND] ...": "kind of effect, such as thermal-lag, or search words, such as: "
-            "spindle growth",
-            **EFFECTS,
-        },
-    )
+OPTIONS: Options = {
+    "kind [KIND] ...": "kind of effect, such as thermal-lag, or search words, such as: spindle "
+    "growth",
+    **EFFECTS,
+}
 
 
 def run(args: argparse.Namespace) -> int:

@@ -1,7 +1,5 @@
 """`matstd examples`: the examples that come with the tool, copied to a folder of the user's."""
 
-from __future__ import annotations
-
 import argparse
 from importlib.resources import files
 from importlib.resources.abc import Traversable
@@ -9,7 +7,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from matstd.console import say
-from matstd.options import add_options
+from matstd.options import Options
 from matstd.twin.errors import BadArgument
 
 
@@ -69,15 +67,11 @@ EXAMPLES = {
 """Examples by name."""
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("name", nargs="?", choices=EXAMPLES, help="copy this example")
-    add_options(
-        parser,
-        {
-            "-o --output FOLDER": "folder of the copy (default: matstd-examples)",
-            "--force": "replace files of an earlier copy",
-        },
-    )
+OPTIONS: Options = {
+    f"name={'|'.join(['', *EXAMPLES])} []": "copy this example",
+    "-o --output FOLDER": "folder of the copy (default: matstd-examples)",
+    "--force": "replace files of an earlier copy",
+}
 
 
 def run(args: argparse.Namespace) -> int:

@@ -3,17 +3,12 @@
 import argparse
 
 from matstd.console import say
-from matstd.options import add_options
+from matstd.options import Options
 
-
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    add_options(
-        parser,
-        {
-            "name [NAME]": "print the machine file of this machine",
-            "--errors": "print its error file instead of its machine file",
-        },
-    )
+OPTIONS: Options = {
+    "name [NAME]": "print the machine file of this machine",
+    "--errors": "print its error file instead of its machine file",
+}
 
 
 def text(name: str, errors: bool = False) -> str:

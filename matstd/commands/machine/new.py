@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from matstd.console import say, say_each
-from matstd.options import add_options, seen_from
+from matstd.options import Options, seen_from
 from matstd.twin.errors import BadArgument
 
 if TYPE_CHECKING:
@@ -40,26 +40,18 @@ WORTH_A_SET_UP = 20.0  # mm by which a second set-up must be moved to be worth i
 NEEDS_MACHINE = ("project", "run")  # kinds that name a machine file
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("kind", choices=TEMPLATES, help="kind of file")
-    parser.add_argument(
-        "--like",
-        metavar="NAME",
-        choices=MACHINES,
-        help=f"for a machine: the kind that is most like yours: {', '.join(MACHINES)}",
-    )
-    add_options(
-        parser,
-        {
-            "--machine MACHINE.toml": "for a project: propose blank, probe, faces, place and "
-            "workspace that suit this machine",
-            "--table-mm:float SIZE ...": "with --machine: diameter of the table, or its two "
-            "sides, mm (default: from the travels)",
-            "-o --output FILE": "output file (default: standard output); for a project or run, a "
-            "machine.toml is also written beside it if none exists",
-            "--force": "overwrite an existing output",
-        },
-    )
+OPTIONS: Options = {
+    f"kind={'|'.join(TEMPLATES)}": "kind of file",
+    f"--like={'|'.join(['', *MACHINES])} NAME": "for a machine: the kind that is most like yours: "
+    + ", ".join(MACHINES),
+    "--machine MACHINE.toml": "for a project: propose blank, probe, faces, place and workspace "
+    "that suit this machine",
+    "--table-mm:float SIZE ...": "with --machine: diameter of the table, or its two sides, mm "
+    "(default: from the travels)",
+    "-o --output FILE": "output file (default: standard output); for a project or run, a "
+    "machine.toml is also written beside it if none exists",
+    "--force": "overwrite an existing output",
+}
 
 
 def template(kind: str, like: str | None = None) -> str:

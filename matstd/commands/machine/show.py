@@ -1,42 +1,33 @@
 """`matstd show`: one page on which a machine moves, with its errors and a program."""
 
-from __future__ import annotations
-
 import argparse
 
 from matstd.commands.compensation.options import DATUM, DRIVEN, PROGRAM
 from matstd.console import say, say_each
-from matstd.options import EFFECTS, Options, add_options, output
+from matstd.options import EFFECTS, ONE_OF, Options, output
 from matstd.twin.errors import BadArgument
 from matstd.twin.units import USUAL_TOOL_LENGTH
 
-
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    add_options(parser, {"machine MACHINE.toml": "machine file"})
-    known: Options = {
+OPTIONS: Options = {
+    "machine MACHINE.toml": "machine file",
+    ONE_OF: {
         "--errors ERRORS.toml": "errors of the machine",
         "--model MODEL.toml": "model of a diagnosis of this machine",
-    }
-    add_options(parser.add_mutually_exclusive_group(), known)
-    add_options(
-        parser,
-        {
-            "--program PROGRAM ...": "a part program (.H, .ngc), or probing programs in their "
-            "order",
-            "--standard STANDARD.toml": "standard that the probing programs touch; also shows the "
-            "clearance of the probe",
-            f"--tool-length={USUAL_TOOL_LENGTH} MM": "length of the tool, from the spindle gauge "
-            "point to the tip (160)",
-            **DATUM,
-            "--control=itnc530 NAME|FILE.toml": "control that probing programs are written for; "
-            "needed for your own dialect (itnc530)",
-            **PROGRAM,
-            "--loads LOADS.csv": "process forces by program line",
-            **DRIVEN,
-            **EFFECTS,
-            **output("PAGE.html"),
-        },
-    )
+    },
+    "--program PROGRAM ...": "a part program (.H, .ngc), or probing programs in their order",
+    "--standard STANDARD.toml": "standard that the probing programs touch; also shows the "
+    "clearance of the probe",
+    f"--tool-length={USUAL_TOOL_LENGTH} MM": "length of the tool, from the spindle gauge point to "
+    "the tip (160)",
+    **DATUM,
+    "--control=itnc530 NAME|FILE.toml": "control that probing programs are written for; needed for "
+    "your own dialect (itnc530)",
+    **PROGRAM,
+    "--loads LOADS.csv": "process forces by program line",
+    **DRIVEN,
+    **EFFECTS,
+    **output("PAGE.html"),
+}
 
 
 def run(args: argparse.Namespace) -> int:

@@ -3,20 +3,15 @@
 import argparse
 
 from matstd.console import say_each
-from matstd.options import add_options, output
+from matstd.options import Options, output
 from matstd.twin.units import UM
 
-
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    add_options(
-        parser,
-        {
-            "machine MACHINE.toml": "machine file",
-            "errors ERRORS.toml": "errors of the machine",
-            "poses POSES.csv": "axis readings, one row per pose",
-            **output("OUT.csv"),
-        },
-    )
+OPTIONS: Options = {
+    "machine MACHINE.toml": "machine file",
+    "errors ERRORS.toml": "errors of the machine",
+    "poses POSES.csv": "axis readings, one row per pose",
+    **output("OUT.csv"),
+}
 
 
 def run(args: argparse.Namespace) -> int:

@@ -7,24 +7,19 @@ from typing import TYPE_CHECKING
 
 from matstd.commands.measured.results import made_in_folder, say_files
 from matstd.console import say, say_each
-from matstd.options import add_options, measured, pitches, starting_model
+from matstd.options import Options, measured, pitches, starting_model
 
 if TYPE_CHECKING:
     from matstd.api.diagnosing import Comparison
     from matstd.twin.compute import Progress
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    add_options(
-        parser,
-        {
-            "run_file RUN.csv": "measurements",
-            **measured(
-                "the run is compared with its predictions (default: the ordinary geometric model, "
-                "fitted)"
-            ),
-        },
-    )
+OPTIONS: Options = {
+    "run_file RUN.csv": "measurements",
+    **measured(
+        "the run is compared with its predictions (default: the ordinary geometric model, fitted)"
+    ),
+}
 
 
 def run(args: argparse.Namespace) -> int:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from matstd.commands.measured.results import made_in_folder, say_files
 from matstd.console import console, say, say_each
 from matstd.next_steps import called
-from matstd.options import add_options, measured, pitches, starting_model
+from matstd.options import Options, measured, pitches, starting_model
 from matstd.twin.units import UM
 
 if TYPE_CHECKING:
@@ -22,22 +22,18 @@ CELL_WIDTH = 40
 """Width in characters of a cell of words, so that the table of figures fits beside them."""
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    add_options(
-        parser,
-        {
-            "run_files RUN.csv ...": "measurements; several runs of one machine (days, set-ups, "
-            "standards) in order of time",
-            "--hold-out RUN ...": "exclude these runs from the fit (only their set-ups are fitted) "
-            "and report how well the others predict them",
-            "--add EFFECT ...": "add these effects to the model",
-            "--only KIND ...": "search only for effects of these kinds or names",
-            "--without KIND ...": "do not search for effects of these kinds or names",
-            "--auto": "add every effect that the diagnosis finds, step by step",
-            "--no-learn": "learn no law of what remains (matstd learn does the same by itself)",
-            **measured("starting model of the diagnosis (default: the ordinary geometric model)"),
-        },
-    )
+OPTIONS: Options = {
+    "run_files RUN.csv ...": "measurements; several runs of one machine (days, set-ups, standards) "
+    "in order of time",
+    "--hold-out RUN ...": "exclude these runs from the fit (only their set-ups are fitted) and "
+    "report how well the others predict them",
+    "--add EFFECT ...": "add these effects to the model",
+    "--only KIND ...": "search only for effects of these kinds or names",
+    "--without KIND ...": "do not search for effects of these kinds or names",
+    "--auto": "add every effect that the diagnosis finds, step by step",
+    "--no-learn": "learn no law of what remains (matstd learn does the same by itself)",
+    **measured("starting model of the diagnosis (default: the ordinary geometric model)"),
+}
 
 
 def run(args: argparse.Namespace) -> int:

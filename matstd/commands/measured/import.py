@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from matstd.console import say, say_each
-from matstd.options import add_options, output, seen_from
+from matstd.options import EXACTLY_ONE, Options, output, seen_from
 from matstd.twin.errors import DesignError
 from matstd.twin.units import UM
 
@@ -34,85 +34,57 @@ _SIGN = {
 """How signs are taken, for the user to check."""
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    files = "csv, txt, xlsx, xls or ods; each of several lists of points is one set-up"
-    add_options(parser, {"files FILE ...": files})
-    _add_kinds(parser)
-    _add_details(parser)
-    add_options(
-        parser,
-        {
-            "--machine MACHINE.toml": "machine file (default: a file is written from the table)",
-            "--u-um:float": "standard uncertainty of one reading, µm",
-            "--u-urad:float": "standard uncertainty of one reading of a rotary axis, or of the "
-            "measured orientation of a target on an arm, µrad",
-            "--travel:list AXIS LOW HIGH": "travel of an axis in the machine file that is "
-            "written, mm or degrees (default: that of the data; of joints without limits in --dh, "
-            "whole half turns)",
-            "--in-order:float SECONDS": "rows are in the order of measurement, SECONDS apart; "
-            "allows the search for drifts and slips",
-            "--unit UNIT": "unit of deviations if the column header names none, such as µm",
-            "--columns NAME,...": "column names of a table without header",
-            "--sheet NAME": "sheet of a workbook (default: the first with data)",
-            "--table:int N": "number of the table in a file with several (default: the one with "
-            "most readings)",
-            **output("RUN.csv", "overwrite existing outputs"),
-        },
-    )
-
-
-def _add_kinds(parser: argparse.ArgumentParser) -> None:
-    """What the files are: one of them."""
-    add_options(
-        parser.add_mutually_exclusive_group(required=True),
-        {
-            "--positioning AXIS": "positioning test of this axis (ISO 230-2): targets, cycles",
-            "--component NAME": "straightness (such as EYX of X in Y) or angular error (EBX) of a "
-            "linear axis: positions, readings",
-            "--circle PLANE": "circular test (ISO 230-4, ball bar) in XY, YZ or ZX: angles, "
-            "radial deviations",
-            "--part": "nominal/measured list of a part that this machine made",
-            "--standard": "nominal/measured list of a calibrated plate or standard that this "
-            "machine measured",
-            "--arm": "serial arm measured by a laser tracker: columns j1, j2 ... (joints) and x, "
-            "y, z (reflector)",
-            "--map MAP.toml": "any other table, described by a mapping file",
-        },
-    )
-
-
-def _add_details(parser: argparse.ArgumentParser) -> None:
-    """What only one kind of file needs."""
-    add_options(
-        parser.add_argument_group("with --positioning"),
-        {
-            "--target= COLUMN": "column of the target positions, if the header does not name it; "
-            "with two encoders, the one that closes the position loop",
-            "--actual= COLUMN": "column of the actual positions, by the reference instrument",
-        },
-    )
-    add_options(
-        parser.add_argument_group("with --circle"),
-        {
-            "--radius:float": "nominal radius, mm",
-            "--feed:float": "feed, mm/min; times and speeds follow from it",
-            "--bar-force:float N": "force of a loaded ball bar on the tool, N, outwards "
-            "(negative: inwards)",
-            "--centre=0.0 X Y Z": "axis readings at the centre of the circle, mm (0 0 0)",
-        },
-    )
-    add_options(
-        parser.add_argument_group("with --arm"),
-        {
-            "--dh DH.csv": "Denavit-Hartenberg parameters a, alpha, d, theta, one row per joint, "
-            "instead of --machine",
-            "--modified": "the parameters of --dh follow the modified convention (Craig)",
-            "--coupled:list J3+J2": "coupled joints: the reading of the first is relative to the "
-            "link before the second (Fanuc: J3+J2)",
-            "--reflector:float X Y Z": "position of the reflector, mm, in the tool frame, or with "
-            "--dh in the flange frame (default: estimated from the data)",
-        },
-    )
+OPTIONS: Options = {
+    "files FILE ...": "csv, txt, xlsx, xls or ods; each of several lists of points is one set-up",
+    EXACTLY_ONE: {
+        "--positioning AXIS": "positioning test of this axis (ISO 230-2): targets, cycles",
+        "--component NAME": "straightness (such as EYX of X in Y) or angular error (EBX) of a "
+        "linear axis: positions, readings",
+        "--circle PLANE": "circular test (ISO 230-4, ball bar) in XY, YZ or ZX: angles, radial "
+        "deviations",
+        "--part": "nominal/measured list of a part that this machine made",
+        "--standard": "nominal/measured list of a calibrated plate or standard that this machine "
+        "measured",
+        "--arm": "serial arm measured by a laser tracker: columns j1, j2 ... (joints) and x, y, z "
+        "(reflector)",
+        "--map MAP.toml": "any other table, described by a mapping file",
+    },
+    "with --positioning": {
+        "--target= COLUMN": "column of the target positions, if the header does not name it; with "
+        "two encoders, the one that closes the position loop",
+        "--actual= COLUMN": "column of the actual positions, by the reference instrument",
+    },
+    "with --circle": {
+        "--radius:float": "nominal radius, mm",
+        "--feed:float": "feed, mm/min; times and speeds follow from it",
+        "--bar-force:float N": "force of a loaded ball bar on the tool, N, outwards (negative: "
+        "inwards)",
+        "--centre=0.0 X Y Z": "axis readings at the centre of the circle, mm (0 0 0)",
+    },
+    "with --arm": {
+        "--dh DH.csv": "Denavit-Hartenberg parameters a, alpha, d, theta, one row per joint, "
+        "instead of --machine",
+        "--modified": "the parameters of --dh follow the modified convention (Craig)",
+        "--coupled:list J3+J2": "coupled joints: the reading of the first is relative to the link "
+        "before the second (Fanuc: J3+J2)",
+        "--reflector:float X Y Z": "position of the reflector, mm, in the tool frame, or with --dh "
+        "in the flange frame (default: estimated from the data)",
+    },
+    "--machine MACHINE.toml": "machine file (default: a file is written from the table)",
+    "--u-um:float": "standard uncertainty of one reading, µm",
+    "--u-urad:float": "standard uncertainty of one reading of a rotary axis, or of the measured "
+    "orientation of a target on an arm, µrad",
+    "--travel:list AXIS LOW HIGH": "travel of an axis in the machine file that is written, mm or "
+    "degrees (default: that of the data; of joints without limits in --dh, whole half turns)",
+    "--in-order:float SECONDS": "rows are in the order of measurement, SECONDS apart; allows the "
+    "search for drifts and slips",
+    "--unit UNIT": "unit of deviations if the column header names none, such as µm",
+    "--columns NAME,...": "column names of a table without header",
+    "--sheet NAME": "sheet of a workbook (default: the first with data)",
+    "--table:int N": "number of the table in a file with several (default: the one with most "
+    "readings)",
+    **output("RUN.csv", "overwrite existing outputs"),
+}
 
 
 def run(args: argparse.Namespace) -> int:

@@ -7,24 +7,20 @@ from typing import TYPE_CHECKING
 
 from matstd.commands.measured.results import made_in_folder, say_files
 from matstd.console import say, say_each
-from matstd.options import add_options, measured, pitches, starting_model
+from matstd.options import Options, measured, pitches, starting_model
 
 if TYPE_CHECKING:
     from matstd.api.learning import LearntLaws
     from matstd.twin.compute import Progress
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    add_options(
-        parser,
-        {
-            "run_files RUN.csv ...": "measurements; several runs of one machine in order of time",
-            "--second-run RUN2.csv": "another run of the machine, in which the law is tried; "
-            "nothing is learnt from it",
-            "--add EFFECT ...": "effects that are in the model besides",
-            **measured("model in which a law is missing (default: the ordinary geometric model)"),
-        },
-    )
+OPTIONS: Options = {
+    "run_files RUN.csv ...": "measurements; several runs of one machine in order of time",
+    "--second-run RUN2.csv": "another run of the machine, in which the law is tried; nothing is "
+    "learnt from it",
+    "--add EFFECT ...": "effects that are in the model besides",
+    **measured("model in which a law is missing (default: the ordinary geometric model)"),
+}
 
 
 def run(args: argparse.Namespace) -> int:

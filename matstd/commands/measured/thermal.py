@@ -1,33 +1,26 @@
 """`matstd thermal`: laws of a thermal drift from logs, and predictions with them."""
 
-from __future__ import annotations
-
 import argparse
 
 from matstd.console import say, say_each
-from matstd.options import add_options, output
+from matstd.options import Options, output
 from matstd.twin.errors import DesignError
 from matstd.twin.units import HOUR, MINUTE, UM
 
-
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    add_options(
-        parser,
-        {
-            "logs LOG.csv ...": "time_s or clock; temperatures name_degC, speeds name_rpm; "
-            "displacements name_um, ...",
-            "--train-until:float HOURS": "fit to the log until this time; hold out the rest",
-            "--held-out LOG.csv ...": "logs that are held out completely",
-            "--own-zeros": "fit a separate zero of the displacements for every log",
-            "--step-min=5.0 MIN": "time step of the laws, minutes (5)",
-            "--sensor-noise:float K": "also evaluate with this noise on the temperatures, K",
-            "--probe-every:float HOURS": "also evaluate with the drift probed at this interval",
-            "--u-um=1.0": "standard uncertainty of a probed drift, µm (1)",
-            "--law thermal.json": "predict with this law of an earlier run; fit nothing",
-            "--probed PROBED.csv": "with --law: drifts probed on standards",
-            **output(),
-        },
-    )
+OPTIONS: Options = {
+    "logs LOG.csv ...": "time_s or clock; temperatures name_degC, speeds name_rpm; displacements "
+    "name_um, ...",
+    "--train-until:float HOURS": "fit to the log until this time; hold out the rest",
+    "--held-out LOG.csv ...": "logs that are held out completely",
+    "--own-zeros": "fit a separate zero of the displacements for every log",
+    "--step-min=5.0 MIN": "time step of the laws, minutes (5)",
+    "--sensor-noise:float K": "also evaluate with this noise on the temperatures, K",
+    "--probe-every:float HOURS": "also evaluate with the drift probed at this interval",
+    "--u-um=1.0": "standard uncertainty of a probed drift, µm (1)",
+    "--law thermal.json": "predict with this law of an earlier run; fit nothing",
+    "--probed PROBED.csv": "with --law: drifts probed on standards",
+    **output(),
+}
 
 
 def run(args: argparse.Namespace) -> int:

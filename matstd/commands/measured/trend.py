@@ -8,23 +8,18 @@ from typing import TYPE_CHECKING
 from matstd.commands.measured.results import made_in_folder, say_files
 from matstd.console import say, say_each
 from matstd.next_steps import called
-from matstd.options import RESULTS, add_options
+from matstd.options import RESULTS, Options
 
 if TYPE_CHECKING:
     from matstd.api.trending import Trend
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    add_options(
-        parser,
-        {
-            "runs FOLDER ...": "folder with at least three runs of one machine on one standard, or "
-            "with their diagnoses or model files; or the files themselves",
-            "--add EFFECT ...": "effects that are fitted to every run beside the geometry, and "
-            "charted",
-            **RESULTS,
-        },
-    )
+OPTIONS: Options = {
+    "runs FOLDER ...": "folder with at least three runs of one machine on one standard, or with "
+    "their diagnoses or model files; or the files themselves",
+    "--add EFFECT ...": "effects that are fitted to every run beside the geometry, and charted",
+    **RESULTS,
+}
 
 
 def run(args: argparse.Namespace) -> int:

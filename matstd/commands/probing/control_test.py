@@ -6,26 +6,22 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from matstd.commands.probing.simulate import add_planted, planted_machine
+from matstd.commands.probing.simulate import PLANTED, planted_machine
 from matstd.console import say, say_each
-from matstd.options import add_options, output
+from matstd.options import Options, output
 from matstd.twin.units import MINUTE, UM
 
 if TYPE_CHECKING:
     from matstd.probe_paths.emit import ProgramSet
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    add_options(parser, {"design OUT": "output folder of `matstd design`, for any control"})
-    add_planted(parser)
-    add_options(
-        parser,
-        {
-            "--touches:int N": "run only N touches, spread evenly over the programs",
-            "--user= USER": "user that runs LinuxCNC if you are root (LinuxCNC refuses root)",
-            **output(),
-        },
-    )
+OPTIONS: Options = {
+    "design OUT": "output folder of `matstd design`, for any control",
+    **PLANTED,
+    "--touches:int N": "run only N touches, spread evenly over the programs",
+    "--user= USER": "user that runs LinuxCNC if you are root (LinuxCNC refuses root)",
+    **output(),
+}
 
 
 def run(args: argparse.Namespace) -> int:

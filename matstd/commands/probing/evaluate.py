@@ -1,58 +1,38 @@
 """`matstd evaluate`: logs that our probing programs left on a control, made a run file."""
 
-from __future__ import annotations
-
 import argparse
 
 from matstd.console import say, say_each
-from matstd.options import Required, add_options, body, output
+from matstd.options import Options, Required, body, output
 from matstd.twin.errors import BadArgument
 from matstd.twin.units import DEG, UM
 
-
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    add_options(
-        parser,
-        {
-            "logs LOG.TXT ...": "logs of the emitted programs, of all probes and set-ups, in any "
-            "order",
-            "--standard STANDARD.toml": Required("standard as calibrated"),
-            "--machine MACHINE.toml": Required("machine file"),
-            "--u-um=1.0": "standard uncertainty of one touch, µm (1.0)",
-            "--z=gauge|tip": "meaning of Z in the result of cycle 4: spindle gauge point, or pole "
-            "of the probe ball; a calibrated sphere shows which (gauge)",
-            "--probe-limit-um=10.0": "largest change of the ball's position or of the probe's "
-            "effective radius between two logs of OUT/setup/..._CAL, µm; beyond it the command "
-            "stops (10)",
-            "--programs DIR": "folder of the programs that the logs are checked against: sides, "
-            "poses, tool and preset (default: `programs` beside STANDARD.toml, if it exists)",
-            "--sensors SENSORS.csv": "temperatures over the clock of the control: columns clock "
-            "(2031-05-06T07:08:09) and T_<sensor>_degC; T_body_degC is the standard's",
-        },
-    )
-    _add_scan(parser)
-    temperature = (
-        "temperature of the standard during probing, °C (default: T_body_degC of --sensors)"
-    )
-    add_options(parser, {**body(temperature), **output("RUN.csv")})
-
-
-def _add_scan(parser: argparse.ArgumentParser) -> None:
-    """Options of a scan."""
-    add_options(
-        parser.add_argument_group("of a scan, a table with x, y, z in place of a log"),
-        {
-            "--scan FACE": "name of the scanned freeform face",
-            "--radius-mm:float": "radius of the ball",
-            "--length-mm:float": "from the gauge point to the centre of the ball",
-            "--frame=machine|standard": "what x, y, z are: readings of the axes, or the centre of "
-            "the ball in the frame of the standard (machine)",
-            "--origin-mm=0.0 X Y Z": "origin of the standard in the table frame, within 5 mm (0 0 "
-            "0)",
-            "--rotation-deg=0.0 A B C": "its rotations about the fixed x, then y, then z of the "
-            "table frame (0 0 0)",
-        },
-    )
+OPTIONS: Options = {
+    "logs LOG.TXT ...": "logs of the emitted programs, of all probes and set-ups, in any order",
+    "--standard STANDARD.toml": Required("standard as calibrated"),
+    "--machine MACHINE.toml": Required("machine file"),
+    "--u-um=1.0": "standard uncertainty of one touch, µm (1.0)",
+    "--z=gauge|tip": "meaning of Z in the result of cycle 4: spindle gauge point, or pole of the "
+    "probe ball; a calibrated sphere shows which (gauge)",
+    "--probe-limit-um=10.0": "largest change of the ball's position or of the probe's effective "
+    "radius between two logs of OUT/setup/..._CAL, µm; beyond it the command stops (10)",
+    "--programs DIR": "folder of the programs that the logs are checked against: sides, poses, "
+    "tool and preset (default: `programs` beside STANDARD.toml, if it exists)",
+    "--sensors SENSORS.csv": "temperatures over the clock of the control: columns clock "
+    "(2031-05-06T07:08:09) and T_<sensor>_degC; T_body_degC is the standard's",
+    "of a scan, a table with x, y, z in place of a log": {
+        "--scan FACE": "name of the scanned freeform face",
+        "--radius-mm:float": "radius of the ball",
+        "--length-mm:float": "from the gauge point to the centre of the ball",
+        "--frame=machine|standard": "what x, y, z are: readings of the axes, or the centre of the "
+        "ball in the frame of the standard (machine)",
+        "--origin-mm=0.0 X Y Z": "origin of the standard in the table frame, within 5 mm (0 0 0)",
+        "--rotation-deg=0.0 A B C": "its rotations about the fixed x, then y, then z of the table "
+        "frame (0 0 0)",
+    },
+    **body("temperature of the standard during probing, °C (default: T_body_degC of --sensors)"),
+    **output("RUN.csv"),
+}
 
 
 def _scan_run(args: argparse.Namespace) -> int:

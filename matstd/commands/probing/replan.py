@@ -1,37 +1,24 @@
 """`matstd replan`: programs planned again for the standard's actual position, or for a visit."""
 
-from __future__ import annotations
-
 import argparse
 
 from matstd.console import say, say_each
-from matstd.options import PDF, SHEET, Required, add_options, asked_printer, output
+from matstd.options import PDF, SHEET, Options, Required, asked_printer, output
 from matstd.twin.units import DEG
 
-
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    add_options(
-        parser,
-        {
-            "logs LOG.TXT|VISIT.csv ...": "logs of the search in OUT/setup, or of programs that "
-            "missed the standard; or the touches of a planned visit (next_visit.csv of learn and "
-            "diagnose)",
-            "--design OUT": Required("output folder of `matstd design` or `matstd replan`"),
-            "--control NAME|FILE.toml": "control that the programs are written for (default: that "
-            "of the programs in OUT)",
-            "--within-mm:float": "largest expected offset of the standard from its planned "
-            "position, mm (default: that of the search in OUT/setup)",
-            "--within-deg:float": "largest expected rotation of the standard from its planned "
-            "orientation, degrees (default: as --within-mm)",
-            **PDF,
-            **output(),
-        },
-    )
-
-
-def is_visit(files: list[str]) -> bool:
-    """Whether a planned visit was given, and no log."""
-    return len(files) == 1 and files[0].lower().endswith(".csv")
+OPTIONS: Options = {
+    "logs LOG.TXT|VISIT.csv ...": "logs of the search in OUT/setup, or of programs that missed the "
+    "standard; or the touches of a planned visit (next_visit.csv of learn and diagnose)",
+    "--design OUT": Required("output folder of `matstd design` or `matstd replan`"),
+    "--control NAME|FILE.toml": "control that the programs are written for (default: that of the "
+    "programs in OUT)",
+    "--within-mm:float": "largest expected offset of the standard from its planned position, mm "
+    "(default: that of the search in OUT/setup)",
+    "--within-deg:float": "largest expected rotation of the standard from its planned orientation, "
+    "degrees (default: as --within-mm)",
+    **PDF,
+    **output(),
+}
 
 
 def run(args: argparse.Namespace) -> int:
@@ -41,7 +28,8 @@ def run(args: argparse.Namespace) -> int:
 
     printed_by = asked_printer(args.pdf)
     angle = None if args.within_deg is None else args.within_deg * DEG
-    if is_visit(args.logs):
+    # a planned visit was given, and no log
+    if len(args.logs) == 1 and args.logs[0].lower().endswith(".csv"):
         found = planned_visit(args.logs[0], args.design, control=args.control)
     else:
         found = replan(

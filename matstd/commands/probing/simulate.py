@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from matstd.console import say, say_each
-from matstd.options import EFFECTS, Options, Required, add_options, body, output
+from matstd.options import EFFECTS, ONE_OF, Options, Required, body, output
 from matstd.twin.errors import DesignError
 from matstd.twin.units import UM
 
@@ -17,36 +17,40 @@ if TYPE_CHECKING:
     from matstd.probe_paths.control import ReadProgram
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    temperature = (
-        "temperature of the standard, °C; the run file states it (default: 20, not stated)"
-    )
-    add_options(
-        parser,
-        {
-            "programs PROGRAM ...": "probing programs, in the order in which they run",
-            "--standard STANDARD.toml": Required("standard that is probed"),
-            "--real-standard STANDARD.toml": "true geometry of the standard, such as a calibrated "
-            "one, if it differs from --standard",
-            "--machine MACHINE.toml": Required("machine file"),
-            **body(temperature),
-        },
-    )
-    add_planted(parser)
-    add_options(
-        parser,
-        {
-            "--sensors SENSORS.csv": "temperatures and spindle speed over time, as for "
-            "`evaluate`: columns clock (2031-05-06T07:08:09), T_<sensor>_degC, spindle_rpm; the "
-            "run begins at the first row",
-            "--probe-length:float": "length of the probe, mm; must equal the program's",
-            "--probe-radius:float": "radius of the probe ball, mm; must equal the program's",
-            "--control=itnc530 NAME|FILE.toml": "control that the programs are written for; "
-            "needed for your own dialect (itnc530)",
-            "--logs FOLDER": "also write the logs of the control to this folder",
-            **output("RUN.csv"),
-        },
-    )
+PLANTED: Options = {
+    ONE_OF: {
+        "--errors ERRORS.toml": "errors of the machine",
+        "--random-errors": "draw the errors from the default distributions",
+    },
+    "--noise-um=1.0": "standard deviation of one touch, µm (1.0)",
+    "--add EFFECT=SIZE ...": "simulate these effects, each size with its unit: "
+    "'thermal-lag(EZZ)=25um,tau=18min', 'backlash(X)=3um', 'drift=X=2um/h'",
+    **EFFECTS,
+    "--setup-error NAME=SIZE": "offset of the standard from its planned set-up, in its own frame: "
+    "X=0.3mm,Y=-0.1mm,C=0.05deg",
+    "--probe-error NAME=SIZE": "error of the probe, true minus calibrated value: "
+    "radius=1um,length=20um",
+    "--seed=0": "seed of noise and random errors (0)",
+}
+"""Errors, noise, effects, set-up and probe as they really are."""
+
+OPTIONS: Options = {
+    "programs PROGRAM ...": "probing programs, in the order in which they run",
+    "--standard STANDARD.toml": Required("standard that is probed"),
+    "--real-standard STANDARD.toml": "true geometry of the standard, such as a calibrated one, if "
+    "it differs from --standard",
+    "--machine MACHINE.toml": Required("machine file"),
+    **body("temperature of the standard, °C; the run file states it (default: 20, not stated)"),
+    **PLANTED,
+    "--sensors SENSORS.csv": "temperatures and spindle speed over time, as for `evaluate`: columns "
+    "clock (2031-05-06T07:08:09), T_<sensor>_degC, spindle_rpm; the run begins at the first row",
+    "--probe-length:float": "length of the probe, mm; must equal the program's",
+    "--probe-radius:float": "radius of the probe ball, mm; must equal the program's",
+    "--control=itnc530 NAME|FILE.toml": "control that the programs are written for; needed for "
+    "your own dialect (itnc530)",
+    "--logs FOLDER": "also write the logs of the control to this folder",
+    **output("RUN.csv"),
+}
 
 
 def run(args: argparse.Namespace) -> int:
@@ -115,33 +119,10 @@ def _search(
     return 0
 
 
-def add_planted(parser: argparse.ArgumentParser) -> None:
-    """Errors, noise, effects, set-up and probe as they really are."""
-    errors: Options = {
-        "--errors ERRORS.toml": "errors of the machine",
-        "--random-errors": "draw the errors from the default distributions",
-    }
-    add_options(parser.add_mutually_exclusive_group(), errors)
-    add_options(
-        parser,
-        {
-            "--noise-um=1.0": "standard deviation of one touch, µm (1.0)",
-            "--add EFFECT=SIZE ...": "simulate these effects, each size with its unit: "
-            "'thermal-lag(EZZ)=25um,tau=18min', 'backlash(X)=3um', 'drift=X=2um/h'",
-            **EFFECTS,
-            "--setup-error NAME=SIZE": "offset of the standard from its planned set-up, in its "
-            "own frame: X=0.3mm,Y=-0.1mm,C=0.05deg",
-            "--probe-error NAME=SIZE": "error of the probe, true minus calibrated value: "
-            "radius=1um,length=20um",
-            "--seed=0": "seed of noise and random errors (0)",
-        },
-    )
-
-
 def planted_machine(
     args: argparse.Namespace, machine: str | Path, control: str, sensors: str | None = None
 ) -> VirtualMachine:
-    """The machine as it really is, with what the options of `add_planted` plant in it."""
+    """The machine as it really is, with what the options `PLANTED` plant in it."""
     from matstd.api.probing import virtual_machine
     from matstd.effect_kinds import register_effects
 

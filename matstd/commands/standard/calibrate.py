@@ -6,7 +6,7 @@ import argparse
 from typing import TYPE_CHECKING
 
 from matstd.console import console, say, say_each
-from matstd.options import Options, add_options, output
+from matstd.options import EXACTLY_ONE, Options, output
 from matstd.twin.errors import DesignError
 from matstd.twin.units import UM
 
@@ -16,37 +16,30 @@ if TYPE_CHECKING:
     from matstd.artefact.body import Standard, Verdict
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    add_options(parser, {"standard STANDARD.toml": "standard as designed"})
-    what: Options = {
+OPTIONS: Options = {
+    "standard STANDARD.toml": "standard as designed",
+    EXACTLY_ONE: {
         "--points CMM.csv ...": "points measured by the CMM: columns feature, x, y, z (mm unless "
         "the header names a unit); a ball may be given by its centre and a column diameter; "
         "several files are several orientations of the standard on the CMM",
         "--program": "write the DMIS program that measures the points",
-    }
-    add_options(parser.add_mutually_exclusive_group(required=True), what)
-    add_options(
-        parser,
-        {
-            "--orientation=0.0 DEG": "with --program: orientation of the standard on the CMM "
-            "about z, degrees (0); four of them (0, 90, 180, 270) cancel squareness and "
-            "differences of scales",
-            "--u-um=0.3": "standard uncertainty of one point, µm (0.3)",
-            "--u-feature-um=0.3": "standard uncertainty of the position of a feature that its "
-            "points share (squareness and stylus of the CMM), from the certificate, µm (0.3)",
-            "--body-u-K=0.5 U": "standard uncertainty of the temperature of the standard during "
-            "the measurement, about 20 °C, K (0.5); it enters the assessment of the scale",
-            "--scale-u-ppm=1.0 U": "standard uncertainty of the scales of the CMM, ppm (1): of "
-            "1.2 + L/350 µm (ISO 10360-2) it is 1.6; all features share it, with that of the "
-            "temperature",
-            "--waviness-um=0.5 W": "root mean square of waves that is assumed along a direction "
-            "of a face without a dense line of points, µm (0.5)",
-            "--accept": "write the standard even if it does not conform to its drawing; the file "
-            "states this",
-            "--cad FOLDER": "also write STEP, STL, 3MF and glTF of the standard as measured",
-            **output("FILE"),
-        },
-    )
+    },
+    "--orientation=0.0 DEG": "with --program: orientation of the standard on the CMM about z, "
+    "degrees (0); four of them (0, 90, 180, 270) cancel squareness and differences of scales",
+    "--u-um=0.3": "standard uncertainty of one point, µm (0.3)",
+    "--u-feature-um=0.3": "standard uncertainty of the position of a feature that its points share "
+    "(squareness and stylus of the CMM), from the certificate, µm (0.3)",
+    "--body-u-K=0.5 U": "standard uncertainty of the temperature of the standard during the "
+    "measurement, about 20 °C, K (0.5); it enters the assessment of the scale",
+    "--scale-u-ppm=1.0 U": "standard uncertainty of the scales of the CMM, ppm (1): of 1.2 + L/350 "
+    "µm (ISO 10360-2) it is 1.6; all features share it, with that of the temperature",
+    "--waviness-um=0.5 W": "root mean square of waves that is assumed along a direction of a face "
+    "without a dense line of points, µm (0.5)",
+    "--accept": "write the standard even if it does not conform to its drawing; the file states "
+    "this",
+    "--cad FOLDER": "also write STEP, STL, 3MF and glTF of the standard as measured",
+    **output("FILE"),
+}
 
 
 def run(args: argparse.Namespace) -> int:

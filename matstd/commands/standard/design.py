@@ -1,11 +1,9 @@
 """`matstd design`: the main job, from a project file to a folder that proves itself."""
 
-from __future__ import annotations
-
 import argparse
 
 from matstd.console import say, say_each
-from matstd.options import PDF, SHEET, add_options, output
+from matstd.options import PDF, SHEET, Options, output
 from matstd.progress import Plan
 from matstd.workers import SCHEDULER
 
@@ -32,18 +30,14 @@ LINEAR_PLAN = {**PLAN, "artefacts of balls": 5.4, "faces": 3.4}
 """The same without a rotary axis, where a standard has no table poses to choose."""
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    add_options(
-        parser,
-        {
-            "project PROJECT.toml": "project file: machine, blank, workspace, control",
-            "--control NAME|FILE.toml": "control that the programs are written for (default: the "
-            "project's; see docs/controls.md)",
-            **SCHEDULER,
-            **PDF,
-            **output(),
-        },
-    )
+OPTIONS: Options = {
+    "project PROJECT.toml": "project file: machine, blank, workspace, control",
+    "--control NAME|FILE.toml": "control that the programs are written for (default: the "
+    "project's; see docs/controls.md)",
+    **SCHEDULER,
+    **PDF,
+    **output(),
+}
 
 
 def run(args: argparse.Namespace) -> int:

@@ -1,39 +1,33 @@
 """`matstd sensitivity`: S at given poses, or a whole study of a project with its Monte Carlo."""
 
-from __future__ import annotations
-
 import argparse
 from pathlib import Path
 
 from matstd.console import say_each
-from matstd.options import PDF, Required, add_options
+from matstd.options import PDF, Options, Required
 from matstd.twin.errors import BadFile, DesignError
 from matstd.workers import SCHEDULER
 
 _STUDY_ONLY = ("draws", "digits", "tolerance_um", "scheduler", "pdf")
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.description = (
-        "With a machine and poses: write the sensitivity to every error parameter at "
-        "every pose to a CSV file. With a project: write maps, trajectories and a "
-        "Monte Carlo study of random machines to a folder."
-    )
-    add_options(
-        parser,
-        {
-            "source MACHINE.toml|PROJECT.toml": "machine file, or project file",
-            "poses [POSES.csv]": "axis readings, one row per pose (with a machine file)",
-            "-o --output OUT": Required("output file"),
-            "--draws:int N": "largest number of random machines",
-            "--digits:int D": "draw until D significant digits are stable (JCGM 101, 7.9.4)",
-            "--tolerance-um:float T": "also report the share of machines whose deviation exceeds "
-            "T µm",
-            **SCHEDULER,
-            **PDF,
-            "--force": "overwrite an existing output",
-        },
-    )
+ABOUT = (
+    "With a machine and poses: write the sensitivity to every error parameter at every pose to a "
+    "CSV file. With a project: write maps, trajectories and a Monte Carlo study of random machines "
+    "to a folder."
+)
+
+OPTIONS: Options = {
+    "source MACHINE.toml|PROJECT.toml": "machine file, or project file",
+    "poses [POSES.csv]": "axis readings, one row per pose (with a machine file)",
+    "-o --output OUT": Required("output file"),
+    "--draws:int N": "largest number of random machines",
+    "--digits:int D": "draw until D significant digits are stable (JCGM 101, 7.9.4)",
+    "--tolerance-um:float T": "also report the share of machines whose deviation exceeds T µm",
+    **SCHEDULER,
+    **PDF,
+    "--force": "overwrite an existing output",
+}
 
 
 def run(args: argparse.Namespace) -> int:

@@ -1,27 +1,20 @@
 """`matstd uncertainty`: of a user's measuring task, from visits to calibrated faces."""
 
-from __future__ import annotations
-
 import argparse
 
 from matstd.console import say, say_each
-from matstd.options import EFFECTS, Required, add_options, output
+from matstd.options import EFFECTS, Options, Required, output
 
-
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    add_options(
-        parser,
-        {
-            "run_files RUN.csv ...": "two or more runs on one standard",
-            "--standard STANDARD.toml": Required("calibrated standard that was measured"),
-            "--task TASK.toml": "measuring task on the workpieces (default: every feature that "
-            "was touched on the faces)",
-            "--model MODEL.toml": "model of an earlier diagnosis; results are corrected with it",
-            "--page PAGE.html": "also write a report page, with its tables beside it",
-            **EFFECTS,
-            **output("OUT.json"),
-        },
-    )
+OPTIONS: Options = {
+    "run_files RUN.csv ...": "two or more runs on one standard",
+    "--standard STANDARD.toml": Required("calibrated standard that was measured"),
+    "--task TASK.toml": "measuring task on the workpieces (default: every feature that was touched "
+    "on the faces)",
+    "--model MODEL.toml": "model of an earlier diagnosis; results are corrected with it",
+    "--page PAGE.html": "also write a report page, with its tables beside it",
+    **EFFECTS,
+    **output("OUT.json"),
+}
 
 
 def run(args: argparse.Namespace) -> int:
