@@ -5,9 +5,9 @@ design looks at them before it begins, the planner for every visit of a table po
 """
 
 from matstd.artefact.tool.heights import OVERSHOOT as OVERSHOOT
+from matstd.artefact.tool.heights import Probe as Probe
 from matstd.artefact.tool.heights import home_readings as home_readings
 from matstd.artefact.tool.heights import readings_at as readings_at
 from matstd.artefact.tool.heights import solid_hull as solid_hull
 from matstd.artefact.tool.heights import swing_height as swing_height
 from matstd.artefact.tool.heights import top_height as top_height
-from matstd.artefact.tool.probe import Probe as Probe

@@ -8,7 +8,6 @@ model (`DriftLaw`), which `LiveDrift` keeps right while the machine works. A new
 with a function that fits it, and a line in `judged.offered`.
 """
 
-from matstd.diagnosis.drift.clocks import lead as lead
 from matstd.diagnosis.drift.drift_file import read_law as read_law
 from matstd.diagnosis.drift.drift_file import write_drift as write_drift
 from matstd.diagnosis.drift.drift_file import write_prediction as write_prediction
@@ -18,6 +17,7 @@ from matstd.diagnosis.drift.judged import Judged as Judged
 from matstd.diagnosis.drift.judged import chosen as chosen
 from matstd.diagnosis.drift.judged import judge as judge
 from matstd.diagnosis.drift.judged import offered as offered
+from matstd.diagnosis.drift.lags import lead as lead
 from matstd.diagnosis.drift.live import LiveDrift as LiveDrift
 from matstd.diagnosis.drift.log_file import check_alike as check_alike
 from matstd.diagnosis.drift.log_file import read_log as read_log

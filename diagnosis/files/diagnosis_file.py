@@ -6,15 +6,24 @@ from typing import Any
 
 import numpy as np
 
-from matstd.diagnosis.answer import Comparison, Detectable, Diagnosis, GroupResidual, Plan, Step
+from matstd.diagnosis.answer import (
+    Comparison,
+    Detectable,
+    Diagnosis,
+    GroupResidual,
+    Plan,
+    RunErrors,
+    Step,
+    Trend,
+)
 from matstd.diagnosis.choice import Choice
-from matstd.diagnosis.files.fault_table import fault_table
-from matstd.diagnosis.files.geometry_table import geometry_table
+from matstd.diagnosis.faults import DescriptionFault
+from matstd.diagnosis.files.geometry_table import UNITS, geometry_table, number_table
 from matstd.diagnosis.files.law_file import learnt_table
-from matstd.diagnosis.files.parts_table import parts_table, promise_table, repeatability_table
+from matstd.diagnosis.files.parts_table import parts_table, promise_table, repeatability_table, um
 from matstd.diagnosis.files.plan_file import planned
-from matstd.diagnosis.files.trend_table import trend_table
 from matstd.diagnosis.fit import Fit, file_unit
+from matstd.diagnosis.geometry import Estimate
 from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.residual import Condition, Region, Side, Wrong
 from matstd.twin.numbers import significant
@@ -32,7 +41,7 @@ def diagnosis_table(result: Diagnosis, remarks: Sequence[str] = ()) -> dict[str,
     return {
         "format": FORMAT,
         "touches": len(result.run),
-        "u_um": _um(float(np.median(result.run.u))),
+        "u_um": um(float(np.median(result.run.u))),
         "verdict": result.verdict.value,
         "headline": {
             "effects": [one.effect.name for one in result.parts.headline],
@@ -50,13 +59,13 @@ def diagnosis_table(result: Diagnosis, remarks: Sequence[str] = ()) -> dict[str,
                 "effect": c.effect,
                 "kind": c.kind,
                 "p_value": c.p_value,
-                "rms_um": _um(c.rms),
-                "test_rms_um": _um(c.test_rms),
+                "rms_um": um(c.rms),
+                "test_rms_um": um(c.test_rms),
             }
             for c in result.candidates
         ],
         "nearest": [
-            {"effect": o.effect, "p_value": o.p_value, "test_rms_um": _um(o.test_rms)}
+            {"effect": o.effect, "p_value": o.p_value, "test_rms_um": um(o.test_rms)}
             for o in result.nearest
         ],
         "repeat_lines": [int(line) for line in result.run.line[result.repeat]],
@@ -87,24 +96,24 @@ def comparison_table(
     return {
         "format": COMPARISON,
         "touches": len(found.run),
-        "u_um": _um(float(np.median(found.run.u))),
-        "measured_rms_um": _um(found.rms_measured),
-        "rms_um": _um(found.rms),
+        "u_um": um(float(np.median(found.run.u))),
+        "measured_rms_um": um(found.rms_measured),
+        "rms_um": um(found.rms),
         "chi2_ratio": significant(found.chi2_ratio),
         "worst": {
             "line": int(found.run.line[worst]),
-            "residual_um": _um(float(found.residual[worst])),
+            "residual_um": um(float(found.residual[worst])),
             "normalised": significant(float(found.normalised[worst])),
         },
         "replicates": None
         if noise.replicates is None
         else {
-            "scatter_um": _um(noise.replicates * float(np.median(found.run.u))),
+            "scatter_um": um(noise.replicates * float(np.median(found.run.u))),
             "degrees_of_freedom": noise.replicates_dof,
         },
         "repeatability": repeatability_table(found.repeatability),
         **({} if found.promise is None else {"promise": promise_table(found.promise)}),
-        "expected_um": _um(found.expected),
+        "expected_um": um(found.expected),
         "gross_errors": [int(line) for line in found.run.line[found.fit.gross.rows]],
         "where": _where(found.where),
         "depends_on": [
@@ -120,15 +129,11 @@ def comparison_table(
     }
 
 
-def _um(value: float) -> float:
-    return significant(value / UM)
-
-
-def _errors(fit: Fit) -> dict[str, float]:
+def _errors(fit: Fit) -> dict[str, float | None]:
     """Figures by which a fit is judged."""
     return {
-        "rms_um": _um(fit.rms),
-        "test_rms_um": _um(fit.test_rms),
+        "rms_um": um(fit.rms),
+        "test_rms_um": um(fit.test_rms),
         "chi2_ratio": significant(fit.noise.chi2_ratio),
     }
 
@@ -174,7 +179,7 @@ def choice_table(choice: Choice) -> dict[str, Any]:
         "ways": [
             {
                 "way": rule.name,
-                "held_out_um": _um(rule.error),
+                "held_out_um": um(rule.error),
                 "effects": [s.effect.name for s in rule.effects],
             }
             for rule in choice.rules
@@ -214,9 +219,9 @@ def _where(found: Sequence[Region]) -> list[dict[str, Any]]:
         {
             "region": conditions_text(region.conditions),
             "error": None if region.wrong is None else _wrong(region.wrong),
-            "mean_um": _um(region.mean),
-            "mean_u_um": _um(region.u),
-            "rms_um": _um(region.rms),
+            "mean_um": um(region.mean),
+            "mean_u_um": um(region.u),
+            "rms_um": um(region.rms),
             "touches": int(region.rows.sum()),
         }
         for region in found
@@ -242,7 +247,7 @@ def _detectable(found: Detectable) -> dict[str, Any]:
     where = {"scanned": scanned} if scanned else {}
     if suffix == "um":
         return {"effect": found.effect.name, "smallest_um": own, **where}
-    largest = None if found.largest is None else _um(found.largest)
+    largest = um(found.largest)
     return {"effect": found.effect.name, "smallest_um": largest, f"smallest_{suffix}": own, **where}
 
 
@@ -255,7 +260,70 @@ def _group(group: GroupResidual) -> dict[str, Any]:
     return {
         "name": group.name,
         "touches": group.touches,
-        "mean_um": _um(group.mean),
-        "rms_um": _um(group.rms),
+        "mean_um": um(group.mean),
+        "rms_um": um(group.rms),
         "normalised_rms": significant(group.normalised),
     }
+
+
+def fault_table(faults: Sequence[DescriptionFault]) -> list[dict[str, Any]]:
+    """Every mistake with its numbers and what undoing it does; lengths in mm, angles in rad."""
+    return [_fault(f) | {"cannot_be_told_from": [_fault(a) for a in f.alike]} for f in faults]
+
+
+def _fault(fault: DescriptionFault) -> dict[str, Any]:
+    return {
+        "mistake": fault.fault.value,
+        "axes": list(fault.axes),
+        "chain": fault.notation or None,
+        "numbers": [number_table(n) for n in fault.numbers],
+        "log_odds": significant(fault.log_odds),
+        "test_rms_um": [significant(v / UM) for v in fault.test_rms],
+        "errors_over_expected": [significant(v) for v in fault.widened],
+    }
+
+
+def trend_table(trend: Trend) -> dict[str, Any]:
+    """Every run with its errors, and every quantity of the geometry run by run."""
+    return {
+        "runs": [_run(run, i in trend.changed) for i, run in enumerate(trend.runs)],
+        "quantities": [_row(trend, k) for k, row in enumerate(trend.rows) if any(row.course)],
+    }
+
+
+def _run(run: RunErrors, has_changed: bool) -> dict[str, Any]:
+    return {
+        "run": run.name,
+        "touches": run.touches,
+        "is_held_out": run.is_held_out,
+        "has_changed": has_changed,
+        "rms_um": um(run.rms),
+        "test_rms_um": um(run.test_rms),
+        "left_out_rms_um": um(run.left_out),
+    }
+
+
+def _row(trend: Trend, k: int) -> dict[str, Any]:
+    """One quantity; what a run does not determine is null."""
+    row, later = trend.rows[k], range(1, len(trend.runs))
+    suffix, factor = UNITS[row.unit]
+    best = {i: trend.known_best(i)[k] for i in later}
+    changes = [None, *(best[i].steps[i - 1] for i in later)]
+    return {
+        "quantity": row.quantity.value,
+        "symbol": row.symbol,
+        "axes": list(row.axes),
+        f"value_{suffix}": [_number(e, factor) for e in row.course],
+        f"value_uncertainty_{suffix}": [_u(e, factor) for e in row.course],
+        f"change_{suffix}": [_number(e, factor) for e in changes],
+        f"change_uncertainty_{suffix}": [_u(e, factor) for e in changes],
+        "has_changed_into": [trend.runs[i].name for i in later if best[i].has_changed_into(i)],
+    }
+
+
+def _number(estimate: Estimate | None, factor: float) -> float | None:
+    return None if estimate is None else significant(estimate.value / factor)
+
+
+def _u(estimate: Estimate | None, factor: float) -> float | None:
+    return None if estimate is None else significant(estimate.u / factor)

@@ -15,7 +15,7 @@ def parts_table(parts: VerdictParts) -> dict[str, Any]:
     geometry = parts.geometry
     return {
         "geometry": {
-            "scatter_um": _um(geometry.left),
+            "scatter_um": um(geometry.left),
             "changed": [row.symbol for row in geometry.changed],
             "beyond_expected": [row.symbol for row in geometry.beyond],
             "description_hints": [hint.fault.value for hint in geometry.hints],
@@ -30,7 +30,7 @@ def _named(one: NamedEffect) -> dict[str, Any]:
     rival = one.runner_up
     return {
         "effect": one.effect.name,
-        "explained_um": _um(one.explained),
+        "explained_um": um(one.explained),
         "share": significant(one.share),
         "in_headline": one.is_headline,
         "runner_up": None if rival is None else rival.effect.name,
@@ -48,9 +48,9 @@ def _log10(log_odds: float) -> float:
 def _remains(left: Remainder) -> dict[str, Any]:
     return {
         "is_real": left.is_real,
-        "size_um": _um(left.size),
+        "size_um": um(left.size),
         "share": significant(left.share),
-        "scatter_um": _um(left.scatter),
+        "scatter_um": um(left.scatter),
         "lack_of_fit_p": left.lack_of_fit,
         "depends_on": [list(pattern.variables) for pattern in left.patterns],
     }
@@ -59,7 +59,7 @@ def _remains(left: Remainder) -> dict[str, Any]:
 def repeatability_table(found: Repeatability) -> dict[str, Any]:
     """Stated noise and what repeats show of it."""
     return {
-        "stated_um": _um(found.stated),
+        "stated_um": um(found.stated),
         "replicates": _scatter(found.replicates),
         "revisits": _scatter(found.revisits),
         "near_neighbours": _scatter(found.neighbours),
@@ -69,17 +69,18 @@ def repeatability_table(found: Repeatability) -> dict[str, Any]:
 def _scatter(found: Scatter | None) -> dict[str, Any] | None:
     if found is None:
         return None
-    return {"scatter_um": _um(found.size), "degrees_of_freedom": found.dof}
+    return {"scatter_um": um(found.size), "degrees_of_freedom": found.dof}
 
 
 def promise_table(found: Promise) -> dict[str, Any]:
     """Errors to expect at the same touches and elsewhere."""
     return {
-        "same_touches_um": _um(found.same),
-        "elsewhere_um": _um(found.elsewhere),
+        "same_touches_um": um(found.same),
+        "elsewhere_um": um(found.elsewhere),
         "domains": [{"domain": d.name, "ratio": significant(d.ratio)} for d in found.domains],
     }
 
 
-def _um(value: float) -> float:
-    return significant(value / UM)
+def um(value: float | None) -> float | None:
+    """A length in mm as a figure of a file in µm; None stays None."""
+    return None if value is None else significant(value / UM)

@@ -24,10 +24,9 @@ from matstd.diagnosis.geometry.changes import (
     state,
 )
 from matstd.diagnosis.geometry.corrections import Correction, corrections
-from matstd.diagnosis.geometry.expected import expected_size, stated_sizes
 from matstd.diagnosis.geometry.functionals import functionals
 from matstd.diagnosis.geometry.model_choice import with_model_choice
-from matstd.diagnosis.geometry.quantities import Functional, Quantity
+from matstd.diagnosis.geometry.quantities import Functional, Quantity, geometric_effects
 from matstd.diagnosis.geometry.rivals import FoundNumber
 from matstd.diagnosis.geometry.rows import (
     Estimate,
@@ -36,7 +35,7 @@ from matstd.diagnosis.geometry.rows import (
 )
 from matstd.diagnosis.policy import POLICY
 from matstd.twin.frames import Array
-from matstd.twin.model import Model
+from matstd.twin.model import Model, traits
 
 LOCATIONS = (Quantity.ROTARY_LINE, Quantity.ROTARY_ZERO)
 """Quantities that one location error is named by, whose usual size is expected of them."""
@@ -262,3 +261,28 @@ def ladder(geometry: Fit, effects: Fit | None = None) -> tuple[LadderStep, ...]:
         fits.insert(1, (rung, fit_run(geometry.run, common, prior, gross=geometry.gross)))
     fits += [] if effects is None else [(Rung.EFFECTS, effects)]
     return tuple(LadderStep(rung, fit.rms, fit.test_rms) for rung, fit in fits)
+
+
+def expected_size(fit: Fit, weights: Array, stated: Array) -> float:
+    """Standard deviation before the run, as the axis or the class of the machine has it.
+
+    Args:
+        weights: Weights of the parameters, (P,).
+        stated: `stated_sizes` of the fit.
+    """
+    part = slice(len(weights))
+    sd = (weights / fit.prior.factor[part] / fit.widened) @ fit.prior.root[part, part]
+    return float(np.linalg.norm(sd * stated))
+
+
+def stated_sizes(fit: Fit) -> Array:
+    """What the machine file expects of every parameter over what its class has, (P,)."""
+    out = np.ones(len(fit.model.parameters))
+    for start, effect in geometric_effects(fit):
+        symbol = traits(effect).ordinary_component
+        if symbol is not None and not symbol.is_angular:
+            expected = fit.model.chain.link(symbol.link).expected
+            if expected is not None:
+                sizes = [p.sd for p in effect.parameters]
+                out[start : start + len(sizes)] = expected / np.array(sizes)
+    return out

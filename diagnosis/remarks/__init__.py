@@ -7,11 +7,11 @@ Something new to notice is a member of `What`, and a line in `run_remarks` that 
 from matstd.diagnosis.remarks.body_size import BodySize as BodySize
 from matstd.diagnosis.remarks.body_size import body_sizes as body_sizes
 from matstd.diagnosis.remarks.order import JumpInOrder as JumpInOrder
-from matstd.diagnosis.remarks.other_run import EffectOfOtherRun as EffectOfOtherRun
 from matstd.diagnosis.remarks.remark_kinds import Noticed as Noticed
 from matstd.diagnosis.remarks.remark_kinds import What as What
 from matstd.diagnosis.remarks.remark_kinds import noticed as noticed
 from matstd.diagnosis.remarks.remark_kinds import short_beam as short_beam
+from matstd.diagnosis.remarks.run_remarks import EffectOfOtherRun as EffectOfOtherRun
+from matstd.diagnosis.remarks.run_remarks import HarmonicsAlike as HarmonicsAlike
 from matstd.diagnosis.remarks.run_remarks import Remark as Remark
 from matstd.diagnosis.remarks.run_remarks import remarks as remarks
-from matstd.diagnosis.remarks.turns import HarmonicsAlike as HarmonicsAlike

@@ -1,6 +1,7 @@
 """What a user should know about a run besides the verdict."""
 
-from dataclasses import replace
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -8,11 +9,27 @@ from matstd.diagnosis.fit import MIN_POSES, Fit, UnitMistake, fit_run, unit_mist
 from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.remarks.body_size import BodySize, body_sizes
 from matstd.diagnosis.remarks.order import JumpInOrder, jump_in_order
-from matstd.diagnosis.remarks.other_run import EffectOfOtherRun
 from matstd.diagnosis.remarks.remark_kinds import Noticed, What, noticed, short_beam
-from matstd.diagnosis.remarks.turns import HarmonicsAlike, harmonics_alike
 from matstd.twin.elastic import short_beams
+from matstd.twin.frames import Array
+from matstd.twin.model import Effect, original_of, traits
 from matstd.twin.numbers import rms
+
+
+@dataclass(frozen=True, slots=True)
+class EffectOfOtherRun:
+    """An effect that a saved model has of another run, and that is not applied as a rule."""
+
+    effect: Effect
+    owner: str  # what it belongs to, as its kind says: "machine", "probe" or "run"
+    inner: Mapping[str, float]  # its inner parameters, as in the file
+    run: str
+    share: float  # what it made there, rms, mm, beside where the standard stood; 0 where unknown
+    # whether the touches of this run show a law of that one, too: it is applied
+    is_repeated: bool = False
+    # whether they speak against a law of the machine: it is not expected here
+    is_refuted: bool = False
+
 
 MIN_DOF = 30.0  # below so many degrees of freedom only large effects can be seen
 
@@ -28,6 +45,55 @@ LOAD_EFFECTS = ("stiffness", "tool-point-stiffness")
 
 MAX_STILL_RANGE = 1e-3
 """Range of readings (rad) below which a joint of an arm stood still; jitter shows nothing."""
+
+
+MAX_UNEVENNESS = 2e-3  # largest distance of a target from an even spacing, rad: a tenth of a degree
+MIN_TARGETS = 3  # targets of a turn up to which no harmonics are distinguished
+
+
+@dataclass(frozen=True, slots=True)
+class HarmonicsAlike:
+    """Harmonics of a turn that read as a found one at evenly spaced targets, the lowest first."""
+
+    axis: str
+    targets: int
+    found: int  # 0 of a curve, whose harmonics are many
+    others: tuple[int, ...]
+
+
+def harmonics_alike(fit: Fit) -> list[HarmonicsAlike]:
+    """Harmonics that n even targets cannot distinguish from a found one k: every m n ± k.
+
+    Of a curve, which may be any of them, the number of targets alone.
+    """
+    out: list[HarmonicsAlike] = []
+    for effect in fit.model.effects:
+        own = traits(original_of(effect) if traits(effect).repetition > 1 else effect)
+        if own.harmonic is None or own.symbol is None:
+            continue
+        axis, k = own.symbol.link, round(own.harmonic)
+        if axis not in fit.run.touches.chain.rotary_axes:
+            continue
+        n = targets_a_turn(fit.run.touches.reading(axis)[fit.used])
+        around = {m * n + side * k for m in (1, 2) for side in (-1, 1)} if k else set()
+        others = tuple(h for h in sorted(around - {k}) if h > 0)
+        if n:
+            out.append(HarmonicsAlike(axis, n, k, others))
+    return list(dict.fromkeys(out))
+
+
+def targets_a_turn(q: Array) -> int:
+    """Number of targets that stand evenly over a whole turn, rad; 0 where they do not.
+
+    Example:
+        >>> targets_a_turn(np.radians([0.0, 90.0, 180.0, 270.0, 360.0])), targets_a_turn(np.ones(3))
+        (4, 0)
+    """
+    turn = 2.0 * np.pi
+    places = np.unique(np.round(np.mod(q + MAX_UNEVENNESS, turn), 4))
+    n = len(places)
+    off = places - places[0] - turn / n * np.arange(n)
+    return n if n > MIN_TARGETS and np.abs(off).max() < MAX_UNEVENNESS else 0
 
 
 Remark = Noticed | UnitMistake | BodySize | HarmonicsAlike | JumpInOrder | EffectOfOtherRun

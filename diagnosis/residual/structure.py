@@ -11,15 +11,15 @@ from enum import Enum
 
 import numpy as np
 from scipy.spatial import cKDTree
-from scipy.special import ndtr
+from scipy.special import gammainc, ndtr
 
 from matstd.diagnosis.evidence import EffectSet, Progress, ResidualSpace, quiet
 from matstd.diagnosis.policy import POLICY
-from matstd.diagnosis.regression import PRIOR_DOF
-from matstd.diagnosis.residual.crowds import crowds
+from matstd.diagnosis.regression import PRIOR_DOF, shots
 from matstd.diagnosis.residual.pattern_tests import PatternTests, TestedPattern
+from matstd.diagnosis.residual.patterns import pairs, variables
 from matstd.diagnosis.residual.waves import Wave, best_wave
-from matstd.twin.frames import Array, IntArray
+from matstd.twin.frames import Array, IntArray, Mask
 from matstd.twin.record import Touches
 
 FEATURE_DISTANCE = 1e4
@@ -154,18 +154,18 @@ def _neighbours(effects: EffectSet) -> list[Structure]:
     r = effects.residual[:n] / np.sqrt(effects.objective / max(effects.dof, 1.0))
     Q = complement.Q[:n]
     out = []
-    for variables, left, right in _neighbour_pairs(touches):
+    for names, left, right in _neighbour_pairs(touches):
         mean = -float(np.einsum("np,np->", Q[left], Q[right]))
-        pairs = max(len(left), 1)
+        count = max(len(left), 1)
         common = float(r[left] @ r[right]) - mean
-        p = float(ndtr(-common / np.sqrt(pairs)))
+        p = float(ndtr(-common / np.sqrt(count)))
         # a neighbour that correlates by c explains c^2 of the square of a touch
-        out.append(_without_columns(Shape.NEIGHBOURS, variables, p, (common / pairs) ** 2))
+        out.append(_without_columns(Shape.NEIGHBOURS, names, p, (common / count) ** 2))
     return out
 
 
 def _crowds(complement: ResidualSpace) -> list[Structure]:
-    """Do gross errors lie together?"""
+    """Do gross errors lie together? Accidents do not; a cause of its own does."""
     allowed = complement.used | complement.gross
     found = crowds(complement.touches, allowed, complement.gross)
     return [_without_columns(Shape.CROWD, names, p, 1.0) for names, p in found.items()]
@@ -188,4 +188,44 @@ def _neighbour_pairs(touches: Touches) -> list[tuple[tuple[str, ...], IntArray, 
     names = tuple(p for p, extent in zip(places, extents, strict=True) if extent > 0.0)
     if len(near) and names:
         out.append((names, near[:, 0], near[:, 1]))
+    return out
+
+
+NEIGHBOURS = 5  # neighbours of a touch that are looked at
+MIN_GROSS = 3  # fewer gross errors than this make no crowd
+
+
+def crowds(touches: Touches, allowed: Mask, gross: Mask) -> dict[tuple[str, str], float]:
+    """Probability, pair of variables by pair, that gross errors lie so close to one another.
+
+    Counted are the pairs of gross errors that are among each other's nearest touches; if every
+    touch is as likely a gross error as every other, that number is nearly Poisson distributed with
+    the mean ``links g (g - 1) / (n (n - 1))``. Coordinates of one shot, which are left out
+    together, count once. Not corrected for the number of pairs.
+
+    Args:
+        allowed: Those that could have been found out, (N,).
+        gross: Those that were, (N,).
+    """
+    shot = shots(touches)
+    rows = np.flatnonzero(allowed)
+    rows = rows[np.unique(shot[rows], return_index=True)[1]]
+    bad = np.isin(shot[rows], shot[gross])
+    n, g = len(rows), int(bad.sum())
+    known = variables(touches)
+    out: dict[tuple[str, str], float] = {}
+    if g < MIN_GROSS or n <= 2 * NEIGHBOURS:
+        return out
+    for names in pairs(touches, known):
+        place = np.column_stack([known[name][rows] for name in names])
+        place = (place - place.min(axis=0)) / np.ptp(place, axis=0)
+        near = cKDTree(place).query(place, k=NEIGHBOURS + 1)[1]
+        own = np.repeat(np.arange(n), NEIGHBOURS + 1)
+        # a link either way is one number: a unique column is found ten times sooner than a pair
+        links = np.unique(np.minimum(own, near.ravel()) * n + np.maximum(own, near.ravel()))
+        low, high = links // n, links % n
+        links = links[low < high]
+        together = int((bad[low] & bad[high])[low < high].sum())
+        mean = len(links) * g * (g - 1) / (n * (n - 1))
+        out[names] = float(gammainc(together, mean)) if together else 1.0
     return out

@@ -7,5 +7,5 @@ the Python of the system, as user interface and as component of the hardware lay
 """
 
 from matstd.probe_paths.linuxcnc.rehearsal import rehearse as rehearse
-from matstd.probe_paths.linuxcnc.replanned import shortened as shortened
+from matstd.probe_paths.linuxcnc.rehearsal import shortened as shortened
 from matstd.probe_paths.linuxcnc.session import installed as installed

@@ -6,4 +6,4 @@ identified model. Out: the `LiveView` of the page, with data for `live/pages/des
 
 from matstd.report.design_view.live_design import DesignScene as DesignScene
 from matstd.report.design_view.live_design import design_live as design_live
-from matstd.report.design_view.volume_error import error_field as error_field
+from matstd.report.design_view.live_design import error_field as error_field

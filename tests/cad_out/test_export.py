@@ -14,8 +14,8 @@ from matstd import cad_out
 from matstd.artefact.body import DatumSphere
 from matstd.cad_out.details import details_of
 from matstd.cad_out.kernel import process, run_apart
+from matstd.cad_out.kernel.exchange import with_units_of_density
 from matstd.cad_out.kernel.process import Ending
-from matstd.cad_out.kernel.settled import with_units_of_density
 from matstd.cad_out.meshes import (
     chord_errors,
     is_watertight,

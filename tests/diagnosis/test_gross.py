@@ -9,7 +9,7 @@ from made_up import arm_poses
 from matstd.diagnosis.fit import fit_run
 from matstd.diagnosis.regression import find_gross, shots
 from matstd.diagnosis.remarks import What, remarks
-from matstd.diagnosis.residual.crowds import crowds
+from matstd.diagnosis.residual.structure import crowds
 from matstd.report.words import remark_sentence
 from matstd.twin.library import ordinary_model
 from matstd.twin.record import Run

@@ -5,7 +5,7 @@ import pytest
 from scipy import stats
 
 from matstd.diagnosis.regression import f_probability
-from matstd.diagnosis.residual.quadratic import ratio_probability
+from matstd.diagnosis.residual.pattern_tests import ratio_probability
 
 A_FEW_PER_CENT = 0.05
 

@@ -5,7 +5,7 @@ import pytest
 from machines import none_but
 
 from matstd.sensitivity.first_order import latin_hypercube
-from matstd.sensitivity.montecarlo.batches import first_order
+from matstd.sensitivity.montecarlo.random_machines import first_order
 from matstd.sensitivity.population import (
     Distributions,
     Group,
