@@ -193,16 +193,20 @@ def _with_moved_balls(
     if again is None:
         return None
     standard = replace(again, name=standard.name, serial=standard.serial)
-    bare = replace(standard, patches=())
-    plain, here = criterion.plain.on(bare), criterion.on(bare)
     try:
-        poses = chosen_poses(plain, standard, standard.spheres, all_poses, choice)
-        tried = touches_to_choose_from(
-            here.reach, standard, standard.spheres, poses, choice.touches
-        )
-        chosen, nearness = chosen_touches_on(here, tried, choice)
+        return identifying_on(criterion, standard, all_poses, choice)
     except NotReachable:
         return None
+
+
+def identifying_on(
+    criterion: Criterion, standard: Standard, all_poses: Array, choice: TouchOptions
+) -> Identifying:
+    """Table poses and touches on the balls of a standard."""
+    bare, balls = replace(standard, patches=()), standard.spheres
+    poses = chosen_poses(criterion.plain.on(bare), standard, balls, all_poses, choice)
+    tried = touches_to_choose_from(criterion.reach, standard, balls, poses, choice.touches)
+    chosen, nearness = chosen_touches_on(criterion.on(bare), tried, choice)
     return Identifying(
         standard=standard, poses=poses, tried=tried, chosen=chosen, nearness=nearness
     )

@@ -19,7 +19,7 @@ from matstd.artefact.hidden import touched as single
 from matstd.artefact.layout import Blank, Wave, wavy_face, with_spheres
 from matstd.artefact.place.body_choice import balls_beside
 from matstd.artefact.place.family import MOST_COST
-from matstd.artefact.place.identifying import Base, Identifying, left_unknown
+from matstd.artefact.place.identifying import Base, Identifying, identifying_on, left_unknown
 from matstd.artefact.place.wavy_proof import (
     PLACES_PER_TOUCH,
     SCAN_POSES,
@@ -32,11 +32,8 @@ from matstd.artefact.worth import (
     BallPlaces,
     Criterion,
     ball_places,
-    chosen_poses,
-    chosen_touches_on,
     each_at,
     face_grid,
-    touches_to_choose_from,
 )
 from matstd.twin.errors import NotBuildable, NotReachable
 from matstd.twin.frames import Array
@@ -99,7 +96,7 @@ def wavy_choice(
             made = balls_beside([face], options.balls, ring, options.choice.touches)
             if made is not None:
                 made = replace(made, name=options.name, serial=options.serial)
-                found = _identifying(criterion, made, all_poses, options)
+                found = identifying_on(criterion, made, all_poses, options.choice)
                 left = left_unknown(criterion, made, found.tried[found.chosen])
                 cost = rms(left) / best_balls if np.isfinite(best_balls) else 1.0
         except NotReachable as error:
@@ -213,14 +210,3 @@ def _some_touches(criterion: Criterion, face: FreeformPatch, poses: Array, count
     one = each_at(face, grid, poses[:1])
     touches = replace(one, rotary=turns)
     return touches[criterion.reach.is_reachable(touches)]
-
-
-def _identifying(
-    criterion: Criterion, made: Standard, all_poses: Array, options: PlacementOptions
-) -> Identifying:
-    """Table poses and touches on the balls of a standard."""
-    bare, choice = replace(made, patches=()), options.choice
-    poses = chosen_poses(criterion.plain.on(bare), made, made.spheres, all_poses, choice)
-    tried = touches_to_choose_from(criterion.reach, made, made.spheres, poses, choice.touches)
-    chosen, nearness = chosen_touches_on(criterion.on(bare), tried, choice)
-    return Identifying(standard=made, poses=poses, tried=tried, chosen=chosen, nearness=nearness)
