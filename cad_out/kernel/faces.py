@@ -59,7 +59,7 @@ def ends_and_middle(edge: Any) -> Array:
     """Five points along an edge, (5, 3), mm."""
     curve = BRepAdaptor_Curve(edge)
     t = np.linspace(curve.FirstParameter(), curve.LastParameter(), 5)
-    return np.array([_coordinates(curve.Value(float(at))) for at in t])
+    return np.array([coordinates(curve.Value(float(at))) for at in t])
 
 
 def solids_of(shape: Any) -> list[Any]:
@@ -94,14 +94,9 @@ class FaceNaming:
     @property
     def names(self) -> tuple[str, ...]:
         """All names that faces of the body carry."""
-        return body_faces(self.standard, self.details)
-
-
-def body_faces(standard: Standard, details: Details) -> tuple[str, ...]:
-    """Names that faces of a standard's body carry."""
-    patches = tuple(patch.name for patch in standard.patches)
-    holes = [name for hole in standard.holes for name in (hole.name, f"{hole.name}_BORE")]
-    return (*patches, standard.plane.name, *details.face_names, *holes)
+        patches = (patch.name for patch in self.standard.patches)
+        holes = [n for hole in self.standard.holes for n in (hole.name, f"{hole.name}_BORE")]
+        return (*patches, self.standard.plane.name, *self.details.face_names, *holes)
 
 
 def named_faces(wanted: FaceNaming, solid: Any) -> dict[str, Any]:
@@ -142,7 +137,7 @@ def _elementary_name(face: Any, wanted: FaceNaming) -> str | None:
 
 def _plane_name(face: Any, plane: Any, wanted: FaceNaming) -> str | None:
     axis = plane.Axis().Direction()
-    normal, place = _coordinates(axis), _coordinates(plane.Location())
+    normal, place = coordinates(axis), coordinates(plane.Location())
     standard = wanted.standard
     if abs(abs(normal[2]) - 1.0) < 1e-12:
         if abs(place[2] - standard.base.thickness) < _SAME:
@@ -165,7 +160,7 @@ def _pad_name(place: Array, details: Details) -> str:
 
 
 def _hole_name(cylinder: Any, wanted: FaceNaming) -> str | None:
-    place = _coordinates(cylinder.Location())
+    place = coordinates(cylinder.Location())
     for bore in wanted.details.bores:
         off = np.cross(place - bore.mouth, bore.direction)
         if np.linalg.norm(off) < _SAME and abs(cylinder.Radius() - bore.radius) < _SAME:
@@ -179,7 +174,7 @@ def _hole_name(cylinder: Any, wanted: FaceNaming) -> str | None:
 
 def _seat_name(cone: Any, wanted: FaceNaming) -> str | None:
     """A countersink, which is wider than any post tapers."""
-    tip = _coordinates(cone.Apex())
+    tip = coordinates(cone.Apex())
     for sphere in wanted.standard.spheres:
         seat = wanted.details.seats[sphere.name]
         if np.linalg.norm(tip - [*sphere.centre[:2], seat.bottom]) < 1e-5:
@@ -189,7 +184,7 @@ def _seat_name(cone: Any, wanted: FaceNaming) -> str | None:
 
 def centre(face: Any) -> Array:
     """Centroid of a face, (3,), mm."""
-    return _coordinates(_properties(BRepGProp.SurfaceProperties_s, face).CentreOfMass())
+    return coordinates(_properties(BRepGProp.SurfaceProperties_s, face).CentreOfMass())
 
 
 def area(face: Any) -> float:
@@ -197,7 +192,8 @@ def area(face: Any) -> float:
     return float(_properties(BRepGProp.SurfaceProperties_s, face).Mass())
 
 
-def _coordinates(p: Any) -> Array:
+def coordinates(p: Any) -> Array:
+    """Of a point, vector or direction of the kernel, (3,)."""
     return np.array([p.X(), p.Y(), p.Z()])
 
 

@@ -10,14 +10,8 @@ from matstd.artefact.body import DatumSphere, FreeformPatch, Standard
 from matstd.cad_out.details import SCREW, Details, Seat
 from matstd.cad_out.kernel.assembly import Product, whole_name
 from matstd.cad_out.kernel.faces import is_valid, solids_of
-from matstd.cad_out.kernel.primitives import boolean, bore_solid, box, cone, plate, revolved
-from matstd.cad_out.kernel.solid import (
-    column_solid,
-    flat_cut,
-    hole_cuts,
-    relief_cut,
-    spline_surface,
-)
+from matstd.cad_out.kernel.primitives import boolean, box, cone, plate, revolved
+from matstd.cad_out.kernel.solid import column_solid, plate_cuts, spline_surface
 from matstd.cad_out.making import PAD_HEIGHT, Block, Joints, Stud
 from matstd.twin.errors import NotBuildable
 
@@ -67,11 +61,7 @@ def _made(standard: Standard, name: str, about: str, shape: Any) -> Product:
 
 
 def _plate(standard: Standard, details: Details, joints: Joints) -> Any:
-    base = standard.base
-    tools = [tool for hole in standard.holes for tool in hole_cuts(hole, base)]
-    tools += [flat_cut(side, base) for side in details.sides.values() if side.flat]
-    tools += [bore_solid(bore) for bore in details.bores]
-    tools += [relief_cut(details.pads, base)] if details.pads else []
+    base, tools = standard.base, plate_cuts(standard, details)
     for stud, ball in zip(joints.studs, standard.spheres, strict=True):
         x, y, _ = ball.centre
         tools.append(cone(x, y, -1.0, base.thickness + 1.0, 0.5 * stud.core, 0.5 * stud.core))

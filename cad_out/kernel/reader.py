@@ -28,6 +28,7 @@ from scipy.interpolate import NdBSpline
 from matstd.cad_out.details import Tolerance
 from matstd.cad_out.kernel.faces import (
     area,
+    coordinates,
     edges_of,
     faces_of,
     is_closed,
@@ -249,7 +250,7 @@ def triangulate(shape: Any, chord: float) -> tuple[Array, np.ndarray, np.ndarray
     vertices, lines = IndexedMap(), IndexedMap()
     TopExp.MapShapes_s(shape, TopAbs_ShapeEnum.TopAbs_VERTEX, vertices)
     TopExp.MapShapes_s(shape, TopAbs_ShapeEnum.TopAbs_EDGE, lines)
-    corners = np.array([_xyz(BRep_Tool.Pnt_s(TopoDS.Vertex(vertex))) for vertex in vertices])
+    corners = np.array([coordinates(BRep_Tool.Pnt_s(TopoDS.Vertex(vertex))) for vertex in vertices])
     edges = [_edge(TopoDS.Edge(line), vertices, chord) for line in lines]
     faces = []
     for face in faces_of(shape):
@@ -285,7 +286,7 @@ def _edge(edge: Any, vertices: Any, chord: float) -> Edge:
     curve = BRepAdaptor_Curve(TopoDS.Edge(edge.Oriented(TopAbs_Orientation.TopAbs_FORWARD)))
 
     def at(t: Array) -> Array:
-        return np.array([_xyz(curve.Value(float(v))) for v in t]).reshape(-1, 3)
+        return np.array([coordinates(curve.Value(float(v))) for v in t]).reshape(-1, 3)
 
     low, high = curve.FirstParameter(), curve.LastParameter()
     t = np.array([low, high])
@@ -306,10 +307,6 @@ def _places(edge: Any, face: Any, place: Map) -> Map:
         return place(np.array(found).reshape(-1, 2))
 
     return at
-
-
-def _xyz(p: Any) -> Array:
-    return np.array([p.X(), p.Y(), p.Z()])
 
 
 def _chart(surface: Any, chord: float) -> Chart:
@@ -334,7 +331,12 @@ def _chart(surface: Any, chord: float) -> Chart:
 
 def _frame(position: Any) -> Frame:
     x, y, z = position.XDirection(), position.YDirection(), position.Direction()
-    return Frame(x=_xyz(x), y=_xyz(y), z=_xyz(z), origin=_xyz(position.Location()))
+    return Frame(
+        x=coordinates(x),
+        y=coordinates(y),
+        z=coordinates(z),
+        origin=coordinates(position.Location()),
+    )
 
 
 def _in_space(surface: Any) -> Map:
@@ -346,7 +348,9 @@ def _in_space(surface: Any) -> Map:
             (i, j) for i in range(1, spline.NbUPoles() + 1) for j in range(1, spline.NbVPoles() + 1)
         ]
         weight = np.array([[spline.Weight(*ij)] for ij in each])  # of a rational one
-        poles = np.hstack([np.array([_xyz(spline.Pole(*ij)) for ij in each]) * weight, weight])
+        poles = np.hstack(
+            [np.array([coordinates(spline.Pole(*ij)) for ij in each]) * weight, weight]
+        )
         knots = _knots(spline, "U"), _knots(spline, "V")
         net = poles.reshape(spline.NbUPoles(), spline.NbVPoles(), 4)
         at = NdBSpline(knots, net, (spline.UDegree(), spline.VDegree()))
@@ -358,7 +362,7 @@ def _in_space(surface: Any) -> Map:
         return at_once
 
     def one_by_one(uv: Array) -> Array:
-        found = [_xyz(surface.Value(float(u), float(v))) for u, v in uv]
+        found = [coordinates(surface.Value(float(u), float(v))) for u, v in uv]
         return np.array(found).reshape(-1, 3)
 
     return one_by_one

@@ -76,16 +76,21 @@ def build_solid(standard: Standard, details: Details) -> Solid:
     merged = ShapeUpgrade_UnifySameDomain(body, True, True, False)
     merged.Build()
     body = _blended(_only_solid(merged.Shape(), standard.name), standard)
-    tools = [tool for hole in standard.holes for tool in hole_cuts(hole, standard.base)]
-    tools += [flat_cut(side, standard.base) for side in details.sides.values() if side.flat]
-    tools += [bore_solid(bore) for bore in details.bores]
-    tools += [relief_cut(details.pads, standard.base)] if details.pads else []
-    if tools:
+    if tools := plate_cuts(standard, details):
         body = boolean(BRepAlgoAPI_Cut(), [body], tools, "drilling the holes")
     plain = _finished(body, standard.name)
     solid = _finished(engraved(plain, details.lettering), standard.name)
     wanted = FaceNaming(standard, details, surfaces)
     return Solid(solid, plain, named_faces(wanted, solid), named_faces(wanted, plain))
+
+
+def plate_cuts(standard: Standard, details: Details) -> list[Any]:
+    """What is cut out of the plate, whatever stands on it: holes, flats, bores and relief."""
+    base = standard.base
+    tools = [tool for hole in standard.holes for tool in _hole_cuts(hole, base)]
+    tools += [_flat_cut(side, base) for side in details.sides.values() if side.flat]
+    tools += [bore_solid(bore) for bore in details.bores]
+    return tools + ([_relief_cut(details.pads, base)] if details.pads else [])
 
 
 def _finished(body: Any, name: str) -> Any:
@@ -183,7 +188,7 @@ def _is_foot(points: Array, standard: Standard) -> bool:
     return False
 
 
-def hole_cuts(hole: MountingHole, base: Base) -> list[Any]:
+def _hole_cuts(hole: MountingHole, base: Base) -> list[Any]:
     """Material that is removed for a screw to the table and its head."""
     through = cone(hole.x, hole.y, -1.0, base.thickness + 1.0, hole.radius, hole.radius)
     floor = base.thickness - hole.bore_depth
@@ -191,7 +196,7 @@ def hole_cuts(hole: MountingHole, base: Base) -> list[Any]:
     return [through, bore]
 
 
-def flat_cut(side: Side, base: Base) -> Any:
+def _flat_cut(side: Side, base: Base) -> Any:
     """Material that is removed from a round side for a flat."""
     far = 2.0 * max(base.half_size)
     low, high = np.array([-far, -far, -1.0]), np.array([far, far, base.thickness])
@@ -203,7 +208,7 @@ def flat_cut(side: Side, base: Base) -> Any:
     return box(low.tolist(), high.tolist())
 
 
-def relief_cut(pads: tuple[Pad, ...], base: Base) -> Any:
+def _relief_cut(pads: tuple[Pad, ...], base: Base) -> Any:
     """Material that is removed from the underside between the pads."""
     a, b = (half + 1.0 for half in base.half_size)
     slab = box([-a, -b, -1.0], [a, b, RELIEF])

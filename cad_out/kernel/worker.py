@@ -13,7 +13,7 @@ import numpy as np
 
 from matstd.artefact.body import Standard, read_standard
 from matstd.cad_out.details import Details, details_of
-from matstd.cad_out.making import joints_of
+from matstd.cad_out.making import joints_if_any
 from matstd.cad_out.meshes import (
     Mesh,
     Piece,
@@ -85,9 +85,8 @@ def _write_parts(
     from matstd.cad_out.kernel.parts import parts_of
     from matstd.cad_out.kernel.reader import read_step
 
-    try:
-        joints = joints_of(standard, details)
-    except NotBuildable:
+    joints = joints_if_any(standard, details)
+    if joints is None:
         return {}
     bought = [replace(one, tolerances=(), notes=(), drawn={}) for one in products[1:]]
     parts = parts_of(standard, details, joints, [replace(b, diameter=None) for b in bought])

@@ -11,6 +11,7 @@ from matstd.cad_out.making.joints import PAD_HEIGHT as PAD_HEIGHT
 from matstd.cad_out.making.joints import Block as Block
 from matstd.cad_out.making.joints import Joints as Joints
 from matstd.cad_out.making.joints import Stud as Stud
+from matstd.cad_out.making.joints import joints_if_any as joints_if_any
 from matstd.cad_out.making.joints import joints_of as joints_of
 from matstd.cad_out.making.making_file import FIRST_MODE as FIRST_MODE
 from matstd.cad_out.making.making_file import SAG as SAG

@@ -84,6 +84,14 @@ def joints_of(standard: Standard, details: Details) -> Joints:
     return Joints(studs, tuple(_block(patch, standard, details) for patch in standard.patches))
 
 
+def joints_if_any(standard: Standard, details: Details) -> Joints | None:
+    """Joints of a standard; None where it cannot be made of parts."""
+    try:
+        return joints_of(standard, details)
+    except NotBuildable:
+        return None
+
+
 def _stud(ball: DatumSphere, standard: Standard, details: Details) -> Stud:
     """The largest thread that the shoulder and the plate leave room for."""
     at = ball.centre[:2]

@@ -6,12 +6,11 @@ from typing import Any
 
 from matstd.artefact.body import Material, Standard
 from matstd.artefact.price import Construction, Estimate, Price, construction_to_make, prices_of
-from matstd.cad_out.details import Details, details_of
+from matstd.cad_out.details import details_of
 from matstd.cad_out.making.cutting import OVERHANG, RADIUS, Cutting, cutting_of
 from matstd.cad_out.making.hints import ROUGHNESS, FaceHint, hints_of
-from matstd.cad_out.making.joints import joints_of
+from matstd.cad_out.making.joints import joints_if_any
 from matstd.cad_out.making.stiffness import Stiffness
-from matstd.twin.errors import NotBuildable
 from matstd.twin.files.whole import write_json
 from matstd.twin.units import DEG, UM
 
@@ -42,16 +41,8 @@ def making_of(standard: Standard, stiffness: Stiffness | None) -> Making:
         hints=hints,
         material=standard.material,
         prices=prices,
-        make=construction_to_make(prices, _has_joints(standard, details)),
+        make=construction_to_make(prices, joints_if_any(standard, details) is not None),
     )
-
-
-def _has_joints(standard: Standard, details: Details) -> bool:
-    try:
-        joints_of(standard, details)
-    except NotBuildable:
-        return False
-    return True
 
 
 def write_making(path: Path, making: Making) -> None:

@@ -19,10 +19,9 @@ from matstd.cad_out.details import (
     datum_touches,
     notes_of,
 )
-from matstd.cad_out.making import Joints, joints_of
+from matstd.cad_out.making import Joints, joints_if_any
 from matstd.report.drawing.sheet import ROW, Block, Sheet, ratio
 from matstd.report.numbers import concave_radius_words
-from matstd.twin.errors import NotBuildable
 from matstd.twin.units import DEG
 from matstd.twin.versions import versions
 
@@ -48,20 +47,13 @@ class Issuer:
 
 def blocks_of(standard: Standard, details: Details, make: Construction) -> list[Block]:
     """Tables of faces, balls, datum targets, holes and parts, then every note, in this order."""
-    joints = _joints(standard, details) if make is Construction.PARTS else None
+    joints = joints_if_any(standard, details) if make is Construction.PARTS else None
     tables = [_balls(standard, details, joints), _targets(standard)]
     tables.append(_holes(standard, details, joints))
     if standard.patches:
         tables.insert(0, _faces(standard))
     tables.append(_parts(standard, details, joints))
     return [*tables, *_notes(standard, details, joints)]
-
-
-def _joints(standard: Standard, details: Details) -> Joints | None:
-    try:
-        return joints_of(standard, details)
-    except NotBuildable:
-        return None
 
 
 def _table(title: str, widths: tuple[float, ...], rows: list[list[str]]) -> Block:
