@@ -12,7 +12,8 @@ import pytest
 from programs import as_read
 
 from matstd.artefact.reach import ProbeReach, Solid, Workshop, round_table
-from matstd.artefact.tool import NOSE_HEIGHT, Probe, solid_hull, swing_height, top_height
+from matstd.artefact.tool import Probe, solid_hull, swing_height, top_height
+from matstd.artefact.tool.heights import NOSE_HEIGHT
 from matstd.probe_paths.campaign import check_moves
 from matstd.probe_paths.control import Move, ProbeStep
 from matstd.probe_paths.emit import Feeds, make_programs
