@@ -65,6 +65,13 @@ def unit(vectors: Array) -> Array:
     return np.asarray(vectors / np.linalg.norm(vectors, axis=-1, keepdims=True))
 
 
+def outward(azimuth: Array | float, elevation: Array | float) -> Array:
+    """Unit vectors by azimuth from x about z and elevation above the plane of x and y, (..., 3)."""
+    level = np.cos(elevation)
+    parts = level * np.cos(azimuth), level * np.sin(azimuth), np.sin(elevation)
+    return np.stack(np.broadcast_arrays(*parts), axis=-1)
+
+
 def fixed_xyz(angles: Array) -> Array:
     """Rotations by angles (..., 3) about the fixed x, then y, then z: ``Rz Ry Rx``, (..., 3, 3)."""
     Rx, Ry, Rz = (rotation(angles[..., i : i + 1] * np.eye(3)[i]) for i in range(3))

@@ -7,7 +7,7 @@ import numpy as np
 
 from matstd.artefact.body.patch import Hit, read_only, rows, sphere_entry
 from matstd.twin.errors import ShapeMismatch
-from matstd.twin.frames import Array, Mask, unit
+from matstd.twin.frames import Array, Mask, outward, unit
 
 STEM_CLEARANCE = 15.0 * np.pi / 180.0
 """Angle kept between a touch on a sphere and the rim of its stem, rad."""
@@ -59,14 +59,7 @@ class DatumSphere:
 
     def normal(self, uv: Array) -> Array:
         """Outward unit normals at (azimuth, elevation), (N, 3)."""
-        azimuth, elevation = rows(uv).T
-        return np.column_stack(
-            [
-                np.cos(elevation) * np.cos(azimuth),
-                np.cos(elevation) * np.sin(azimuth),
-                np.sin(elevation),
-            ]
-        )
+        return outward(*rows(uv).T)
 
     def curvature(self, uv: Array) -> Array:
         """Principal curvatures, (N, 2), 1/mm: convex everywhere, so ``-1/r``."""

@@ -67,6 +67,12 @@ class CalibrationFit:
     remarks: tuple[str, ...]  # unused points and other irregularities
 
     @property
+    def known(self) -> Known:
+        """What the calibration knows of the standard."""
+        assert self.standard.known is not None
+        return self.standard.known
+
+    @property
     def verdicts(self) -> tuple[Verdict, ...]:
         """Conformity of the features with the drawing, once evaluated."""
         return () if self.standard.known is None else self.standard.known.verdicts

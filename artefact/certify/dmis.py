@@ -19,7 +19,7 @@ from matstd.artefact.body import Standard
 from matstd.artefact.certify.cmm_points_file import SIDES, STAMP
 from matstd.artefact.certify.cmm_stylus import TIP, TO_PIVOT, UPRIGHT, Angle, choose_stylus
 from matstd.twin.errors import NotEnoughData
-from matstd.twin.frames import Array
+from matstd.twin.frames import Array, outward
 from matstd.twin.units import DEG, T_REF
 
 PITCH = 5.0  # between points on a face, mm: half the shortest wave that the control heights resolve
@@ -144,12 +144,11 @@ def body_top(standard: Standard) -> float:
 
 def ball_points(centre: Array, radius: float) -> tuple[Array, Array]:
     """Pole and rings of a ball, points and normals."""
-    normals = [np.array([0.0, 0.0, 1.0])]
-    for elevation, count in _RINGS:
-        e = elevation * DEG
-        for a in np.linspace(0.0, 2.0 * np.pi, count, endpoint=False):
-            normals.append(np.array([np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)]))
-    n = np.stack(normals)
+    rings = [
+        outward(np.linspace(0.0, 2.0 * np.pi, count, endpoint=False), elevation * DEG)
+        for elevation, count in _RINGS
+    ]
+    n = np.concatenate([[[0.0, 0.0, 1.0]], *rings])
     return centre + radius * n, n
 
 

@@ -75,10 +75,8 @@ def with_verdicts(
         causes += _cause_of_diameters(diameters, found)
     if scale.is_refused:
         causes.append(frame.cause(nominal.material.expansion))
-    known = found.standard.known
-    assert known is not None
     u_size = allowed.u_size(nominal.material.expansion)
-    known = replace(known, verdicts=(*verdicts, scale), u_scale=u_size)
+    known = replace(found.known, verdicts=(*verdicts, scale), u_scale=u_size)
     return replace(found, standard=replace(found.standard, known=known)), tuple(causes)
 
 
@@ -92,9 +90,7 @@ class _Frame:
         self.places = np.array([a.centre for a, _ in measured])
         off = np.array([b.centre - a.centre for a, b in measured])
         self.middle = self.places.mean(axis=0)
-        known = found.standard.known
-        assert known is not None
-        floor = min(known.features[name].u for name in self.names)
+        floor = min(found.known.features[name].u for name in self.names)
         J = _rigid(self.places - self.middle)
         scatter = _scatter(J, off.ravel(), floor)
         self.covariance = scatter**2 * np.linalg.inv(J.T @ J)
@@ -159,9 +155,7 @@ def _of_balls(
     nominal: Standard, found: CalibrationFit, allowed: Allowed, frame: _Frame
 ) -> list[Verdict]:
     """Diameter and position of every measured ball."""
-    known = found.standard.known
-    assert known is not None
-    out = []
+    known, out = found.known, []
     for drawn, made in zip(nominal.spheres, found.standard.spheres, strict=True):
         if drawn.name not in known.features:
             continue
@@ -184,9 +178,7 @@ def _of_faces(
     nominal: Standard, found: CalibrationFit, allowed: Allowed, frame: _Frame
 ) -> list[Verdict]:
     """Profile of every measured face."""
-    known = found.standard.known
-    assert known is not None
-    out = []
+    known, out = found.known, []
     for face in nominal.patches:
         if face.name not in known.features:
             continue

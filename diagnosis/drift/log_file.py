@@ -84,16 +84,19 @@ def _time(table: CsvTable) -> Array:
     if len(table) < 2 * MIN_STRETCH:
         found = f"{len(table)} rows"
         raise BadFile(table.path, "table", found, f"{2 * MIN_STRETCH} readings at least")
-    name = next((n for n in ("clock", *TIMES) if n in table), None)
-    if name is None:
-        table.require(["time_s"])
-    assert name is not None
-    time = table.numbers(name) * TIMES[name] if name != "clock" else _clock(table)
+    name, time = _times(table)
     back = np.flatnonzero(np.diff(time) <= 0.0)
     if len(back):
         row = int(back[0]) + 1
         raise table.bad(row, name, table.text(name)[row], "a later reading in every row")
     return time
+
+
+def _times(table: CsvTable) -> tuple[str, Array]:
+    """The column of time, and the time of every row, (N,), s."""
+    name = next((n for n in ("clock", *TIMES) if n in table), "time_s")
+    table.require([name])
+    return name, _clock(table) if name == "clock" else table.numbers(name) * TIMES[name]
 
 
 def _clock(table: CsvTable) -> Array:
@@ -221,18 +224,13 @@ def read_probed(path: str | Path, record: DriftRecord) -> tuple[IntArray, Array,
         BadFile: A component is missing, or a probing lies outside the log.
     """
     table = CsvTable(read_text(path), path)
-    name = next((n for n in ("clock", *TIMES) if n in table), None)
-    if name is None:
-        table.require(["time_s"])
-    assert name is not None
-    time = _clock(table) if name == "clock" else table.numbers(name) * TIMES[name]
+    name, time = _times(table)
     out = np.empty((len(table), len(record.components)))
     for k, component in enumerate(record.components):
         endings = [e for e, (unit, _) in DISPLACEMENTS.items() if unit == record.units[k]]
-        column = next((component + e for e in endings if component + e in table), None)
-        if column is None:
-            table.require([component + endings[0]])
-        assert column is not None
+        named = [component + ending for ending in endings]
+        column = next((n for n in named if n in table), named[0])
+        table.require([column])
         out[:, k] = table.numbers(column) * DISPLACEMENTS[_ending(column)][1]
     rows = np.array([int(np.argmin(np.abs(record.time - t))) for t in time], dtype=np.int64)
     for i, (row, t) in enumerate(zip(rows, time, strict=True)):

@@ -6,7 +6,7 @@ another one as the surface between its points.
 
 import numpy as np
 
-from matstd.twin.frames import Array
+from matstd.twin.frames import Array, outward
 from matstd.twin.record import Touches
 
 MIN_POINTS = 4  # distinct points of a feature from which a surface is drawn between them
@@ -60,8 +60,7 @@ def _sphere(centre: Array, radius: float) -> Array:
     turn = np.linspace(0.0, 2.0 * np.pi, MERIDIANS + 1)
     tilt = np.linspace(-0.5 * np.pi, 0.5 * np.pi, MERIDIANS // 2 + 1)
     T, L = np.meshgrid(turn, tilt, indexing="ij")
-    unit = np.stack([np.cos(L) * np.cos(T), np.cos(L) * np.sin(T), np.sin(L)], axis=-1)
-    grid = centre + (radius - SURFACE_DEPTH) * unit
+    grid = centre + (radius - SURFACE_DEPTH) * outward(T, L)
     a, b, c, d = grid[:-1, :-1], grid[1:, :-1], grid[1:, 1:], grid[:-1, 1:]
     return np.concatenate([np.stack(t, axis=2).reshape(-1, 3, 3) for t in ((a, b, c), (a, c, d))])
 

@@ -11,7 +11,7 @@ from matstd.cad_out.meshes import owners
 from matstd.report.scenes.renderer import aim, picture_axes, rendered, surface
 from matstd.report.style import series
 from matstd.twin.files import written_whole
-from matstd.twin.frames import Array
+from matstd.twin.frames import Array, outward
 from matstd.twin.sampling import grid_points
 
 SIZE = (2000, 860)
@@ -59,8 +59,9 @@ def _scene(standard: Standard, corners: Array, triangles: np.ndarray) -> Any:
         plotter.subplot(0, column)
         _add_body(plotter, standard, corners, triangles, owner)
         _add_faces(plotter, faces)
-        pixel = _aim(plotter, standard, _eye(view))
-        _add_labels(plotter, standard, _eye(view), pixel)
+        eye = outward(*np.radians(view))
+        pixel = _aim(plotter, standard, eye)
+        _add_labels(plotter, standard, eye, pixel)
     return plotter
 
 
@@ -258,14 +259,3 @@ def _aim(plotter: Any, standard: Standard, eye: Array) -> float:
     aim(plotter, eye, middle, half)
     plotter.add_axes(line_width=4, color="black", viewport=(0.0, 0.0, 0.16, 0.2))
     return 2.0 * half / SIZE[1]
-
-
-def _eye(view: tuple[float, float]) -> Array:
-    azimuth, elevation = np.radians(view)
-    return np.array(
-        [
-            np.cos(elevation) * np.cos(azimuth),
-            np.cos(elevation) * np.sin(azimuth),
-            np.sin(elevation),
-        ]
-    )

@@ -17,8 +17,7 @@ _WARM = 15.0  # K about 20 degC, within which pieces are measured
 
 def calibration_lines(found: CalibrationFit) -> list[str]:
     """The largest deviation, every feature with its uncertainty, assumptions."""
-    known = found.standard.known
-    assert known is not None
+    known = found.known
     worst = max(found.moved, key=lambda name: found.moved[name])
     lines = [
         f"{len(known.features)} features of '{found.standard.name}' from {known.source}; "
