@@ -12,7 +12,7 @@ from matstd.artefact.hidden import Scan
 from matstd.artefact.layout import Blank, Fittings
 from matstd.artefact.reach import TABLE_RADIUS
 from matstd.artefact.worth import Calibration, CriterionOptions, TouchOptions
-from matstd.twin.elastic import material_names
+from matstd.twin.elastic import MATERIALS
 from matstd.twin.errors import BadFile, UnknownAxis
 from matstd.twin.files import Pair, Table
 from matstd.twin.machine import Chain
@@ -75,7 +75,7 @@ class MaterialTable(Table):
 
 def names_with_values() -> str:
     """Names of materials with usual values."""
-    return ", ".join(name.replace("-", " ") for name in material_names())
+    return ", ".join(name.replace("-", " ") for name in MATERIALS)
 
 
 BASE_THICKNESS = 30.0  # thickness of the plate of every standard, mm

@@ -112,11 +112,6 @@ def travels(brief: Brief) -> Travels:
     return Travels(tried, poses[rises], against, wish)
 
 
-def nearest_in_reach(brief: Brief, tried: PlacesInReach) -> tuple[str, ...]:
-    """Nearest changes of the project that bring enough places within reach, in words."""
-    return tuple(wish.words for wish in _nearest(brief, tried))
-
-
 def _min_places(brief: Brief) -> int:
     return _PLACES_A_PATCH * brief.options.patches
 
@@ -198,8 +193,8 @@ def _limit_words(limit: Limit, value: float) -> str:
     return f"{limit.name} would have to go to {end:.0f} mm, its travel ends at {limit.at:g}"
 
 
-def _nearest(brief: Brief, tried: PlacesInReach) -> list[Wish]:
-    """The smallest feasible change of every kind."""
+def nearest_in_reach(brief: Brief, tried: PlacesInReach) -> tuple[str, ...]:
+    """The smallest change of every kind that brings enough places within reach, in words."""
     found: dict[str, Wish] = {}
     wanted, rotary = brief.reach, brief.rotary
     wishes = [
@@ -215,7 +210,7 @@ def _nearest(brief: Brief, tried: PlacesInReach) -> list[Wish]:
                 found[wish.kind] = wish
         except NotReachable:  # no room to approach a reading
             continue
-    return list(found.values())[:_MAX_WISHES]
+    return tuple(wish.words for wish in found.values())[:_MAX_WISHES]
 
 
 def _moved_setups(brief: Brief, tried: PlacesInReach) -> Iterator[Wish]:

@@ -109,7 +109,8 @@ def _made(
         write_scan_path(path, standard.patches[0], scan, at, brief.reach, standard)
     making = making_of(placement.standard, stiffness)
     write_making(folder / "making.json", making)
-    _write_standard(folder, placement.standard)
+    write_standard(folder / "standard.toml", placement.standard)
+    write_whole(folder / "cmm.dmi", cmm_program(placement.standard), newline="\r\n")
     plan = plans[0][1]
     with (
         beside(_export, brief, placement.standard, making.make, folder, proving.q) as exported,
@@ -179,12 +180,6 @@ def _on_twins(
     proofs = [m.proof for m in machines]
     found = write_identification(folder / "identification.json", first.fit, proofs)
     return _OnTwins(tuple(machines), found.effective, budgets, visits)
-
-
-def _write_standard(folder: Path, standard: Standard) -> None:
-    """The design, and the program of its calibration."""
-    write_standard(folder / "standard.toml", standard)
-    write_whole(folder / "cmm.dmi", cmm_program(standard), newline="\r\n")
 
 
 def _worst(placement: Placement, study: Study) -> WorstRegions:

@@ -69,10 +69,10 @@ class _Side:
         self.low = np.minimum(self.low, corners.min(axis=(0, 1)))
         self.high = np.maximum(self.high, corners.max(axis=(0, 1)))
 
-    def write(self, on: str, text: str, place: Array) -> None:
-        """A letter."""
+    def write(self, axis: str, place: Array) -> None:
+        """The letter of an axis, on what it moves."""
         x, y, z = (float(v) for v in place)
-        self.letters.append(Letter(on, text, (x, y, z)))
+        self.letters.append(Letter(axis, axis, (x, y, z)))
 
 
 def chain_bodies(chain: Chain, length: float) -> tuple[list[Drawn], list[Letter]]:
@@ -168,7 +168,7 @@ def _carriage(side: _Side, link: Link, carrier: str, colour: tuple[str, str]) ->
     low = np.array([at[0] - half[0], at[1] - half[1], begin])
     high = np.array([at[0] + half[0], at[1] + half[1], begin + thick])
     side.add(link.name, colour[0], block(low, high, axes))
-    side.write(link.name, link.name, _corner(axes, [high[0], low[1], begin + 0.5 * thick]))
+    side.write(link.name, np.array([high[0], low[1], begin + 0.5 * thick]) @ axes)
     first, last = _travel(link)
     rail = np.array([low[0] + first, 0.0, high[2]]), np.array([high[0] + last, 0.0, high[2] + 22.0])
     parts = []
@@ -184,10 +184,6 @@ def _carriage(side: _Side, link: Link, carrier: str, colour: tuple[str, str]) ->
         below = np.array([rail[0][0], low[1], rail[1][2]])
         above = np.array([rail[1][0], high[1], rail[1][2] + 0.4 * thick])
         side.add(carrier, colour[1], block(below, above, axes))
-
-
-def _corner(axes: Array, coordinates: Sequence[float]) -> Array:
-    return np.asarray(np.array(coordinates) @ axes)
 
 
 def _travel(link: Link) -> tuple[float, float]:
@@ -211,7 +207,7 @@ def _ram(side: _Side, link: Link, carrier: str, colour: tuple[str, str]) -> None
     low, high = middle - wide, middle + wide
     low[2], high[2] = begin, begin + (last - first) + deep
     side.add(link.name, colour[0], block(low, high, axes))
-    side.write(link.name, link.name, _corner(axes, [at[0] + half, at[1], high[2]]))
+    side.write(link.name, np.array([at[0] + half, at[1], high[2]]) @ axes)
     side.high, side.low = side.high.copy(), side.low.copy()
     wall, guide = 0.35 * half, (begin + last, begin + last + deep)
     parts = []
@@ -222,7 +218,7 @@ def _ram(side: _Side, link: Link, carrier: str, colour: tuple[str, str]) -> None
         parts.append(block(a, b, axes))
     # what comes next is built on the housing, not on the bar that moves through it
     side.low, side.high = middle @ axes, middle @ axes
-    side.add(carrier, colour[1] if carrier != FOUNDATION else _BED, *parts)
+    side.add(carrier, colour[1], *parts)
 
 
 def _disc(side: _Side, link: Link, carrier: str, colour: tuple[str, str]) -> None:
@@ -241,7 +237,7 @@ def _disc(side: _Side, link: Link, carrier: str, colour: tuple[str, str]) -> Non
     )
     side.add(link.name, colour[0], plain @ axes)
     side.add(link.name, _RAIL, mark)
-    side.write(link.name, link.name, _corner(axes, [at[0] - radius, at[1], begin + 0.5 * thick]))
+    side.write(link.name, np.array([at[0] - radius, at[1], begin + 0.5 * thick]) @ axes)
 
 
 def _cradle(side: _Side, link: Link, carrier: str, colour: tuple[str, str]) -> None:
@@ -273,7 +269,7 @@ def _cradle(side: _Side, link: Link, carrier: str, colour: tuple[str, str]) -> N
         ends = [np.array([pin, line[1], line[2]]) @ axes for pin in pins]
         trunnions.append(rod(ends[0], ends[1], 0.6 * round_line))
     side.add(link.name, colour[0], *parts, *trunnions)
-    side.write(link.name, link.name, _corner(axes, [at[0] + wide + 2.6 * arm, line[1], line[2]]))
+    side.write(link.name, np.array([at[0] + wide + 2.6 * arm, line[1], line[2]]) @ axes)
     corners = np.concatenate(
         [*(b.corners.reshape(-1, 3) for b in side.bodies if b.on == link.name)]
     )
@@ -289,8 +285,7 @@ def _cradle(side: _Side, link: Link, carrier: str, colour: tuple[str, str]) -> N
         bearings.append(block(low, high, axes))
     low = np.array([at[0] - wide - 2.3 * arm, line[1] - deep, foot])
     high = np.array([at[0] + wide + 2.3 * arm, line[1] + deep, foot + plate])
-    shown = colour[1] if carrier != FOUNDATION else _BED
-    side.add(carrier, shown, *bearings, block(low, high, axes))
+    side.add(carrier, colour[1], *bearings, block(low, high, axes))
 
 
 def _arm(side: _Side, joints: Sequence[Link], colours: dict[str, str]) -> None:
@@ -305,7 +300,7 @@ def _arm(side: _Side, joints: Sequence[Link], colours: dict[str, str]) -> None:
             side.add(link.name, colours[link.name], rod(before, centre, 0.55 * size))
         reach = 1.1 * size * link.direction
         side.add(carrier, colours.get(carrier, _BED), rod(centre - reach, centre + reach, size))
-        side.write(link.name, link.name, centre + 1.3 * reach)
+        side.write(link.name, centre + 1.3 * reach)
         before = centre
 
 

@@ -1,13 +1,10 @@
 """Pictures of trajectories: what the errors of one axis do, and what random machines do."""
 
-from __future__ import annotations
-
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from matstd.report.style import INK, figure, plain, reading_label, save, series
+from matstd.report.style import INK, Axes, Figure, figure, plain, reading_label, save, series
 from matstd.report.words import sampling_words
 from matstd.sensitivity.montecarlo import Volumetric
 from matstd.sensitivity.study import AlongPath, Study, Trajectory
@@ -15,10 +12,6 @@ from matstd.twin.frames import Array
 from matstd.twin.model import Effect, traits
 from matstd.twin.numbers import rms
 from matstd.twin.units import UM, URAD
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 _SHOWN = 6  # errors with a line of their own
 

@@ -194,8 +194,9 @@ def _key(design: Design) -> list[KeyFigure]:
 def _tolerance_figure(design: Design, tolerance: float) -> KeyFigure:
     """Traffic light of the tolerance of the user's task."""
     share = _provable(design, tolerance)[0]
+    light = "good" if share >= GREEN else "fair" if share >= YELLOW else "bad"
     words = f"of the tolerance of {um(tolerance)} remain for the part"
-    return KeyFigure(percent(share), words, _light(share))
+    return KeyFigure(percent(share), words, light)
 
 
 def _opening(design: Design, folder: Path, remarks: Sequence[str]) -> Section:
@@ -319,8 +320,3 @@ def _provable(design: Design, tolerance: float) -> tuple[float, str]:
     shares = {n: guarded(tolerance, b.u, b.dof).share for n, b in design.budgets.items()}
     best = max(shares, key=shares.__getitem__)
     return shares[best], best
-
-
-def _light(share: float) -> str:
-    """Traffic light of the share of a tolerance that remains."""
-    return "good" if share >= GREEN else "fair" if share >= YELLOW else "bad"

@@ -1,21 +1,13 @@
 """Pictures of what a machine reaches of a blank, and of the bodies that fit on it side by side."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from matstd.artefact.feasibility import Room
 from matstd.artefact.layout import Blank, least_gap
 from matstd.artefact.reach import ANGLE, Limit, PlacesInReach
-from matstd.report.style import BLUE, INK, RED, figure, plain
+from matstd.report.style import BLUE, INK, RED, Axes, Figure, figure, plain
 from matstd.twin.machine import Chain
 from matstd.twin.units import DEG
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 _COLOURS = "viridis"
 

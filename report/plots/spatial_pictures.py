@@ -121,6 +121,8 @@ def _points(ax: Any, fit: Fit, limit: float, p: Array) -> Any:
 
 def _standing(ax: Any, touches: Touches) -> None:
     """Equal scales, a view, and unobtrusive axes."""
+    from matplotlib.ticker import MaxNLocator
+
     low, high = touches.point.min(axis=0), touches.point.max(axis=0)
     size = np.maximum(high - low, 0.12 * float((high - low).max()))
     middle = 0.5 * (low + high)
@@ -132,17 +134,11 @@ def _standing(ax: Any, touches: Touches) -> None:
     for letter, axis in zip("xyz", (ax.xaxis, ax.yaxis, ax.zaxis), strict=True):
         axis.set_label_text(f"{letter} in mm", fontsize=8)
         axis.labelpad = 0.0 if letter != "z" else -3.0  # else it runs into the axes to the right
-        axis.set_major_locator(_few_ticks())
+        axis.set_major_locator(MaxNLocator(5))
         axis.pane.set_facecolor(WASH)
         axis.pane.set_edgecolor(LINE)
         axis._axinfo["grid"].update(color=LINE, linewidth=0.6)
     ax.tick_params(labelsize=7.5, pad=0)
-
-
-def _few_ticks() -> Any:
-    from matplotlib.ticker import MaxNLocator
-
-    return MaxNLocator(5)
 
 
 def draw_pose_arrows(fit: Fit) -> Figure:

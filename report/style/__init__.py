@@ -19,9 +19,10 @@ from matstd.twin.units import DEG
 from matstd.twin.words import LENGTHS, in_own_unit
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes as Axes
     from matplotlib.figure import Figure as Figure
 else:  # matplotlib takes a second to load, and is loaded inside the functions that draw
-    Figure = Any
+    Axes = Figure = Any
 
 
 INK, SOFT, LINE, WASH = "#1c2430", "#7d8794", "#d8dee6", "#f4f6f9"

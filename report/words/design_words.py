@@ -148,6 +148,8 @@ def proof_sentence(placement: Placement) -> str:
     """Power of what proves to detect a wrong model, compared with more touches on balls."""
     faces, anywhere = placement.power, placement.power_in_volume
     balls, of_all = placement.power_of_balls, percent(float(anywhere.power.mean()))
+    has_faces = bool(placement.standard.patches)
+    unlike = ", and no ball resembles the surface of a workpiece" if has_faces else ""
     return (
         f"Proof: {faces.touches} touches on {proving_words(placement.standard, placement.family)}, "
         f"not used for identification, detect a model that is wrong by {um(MODEL_ERROR)} rms "
@@ -158,13 +160,7 @@ def proof_sentence(placement: Placement) -> str:
         f"({anywhere.found} of {len(anywhere.effects)} "
         f"effects). The same number of further touches on the balls that identify "
         f"would detect {balls.found} of these, but they share the calibration on which the model "
-        f"rests{_unlike(placement)}."
-    )
-
-
-def _unlike(placement: Placement) -> str:
-    return (
-        ", and no ball resembles the surface of a workpiece" if placement.standard.patches else ""
+        f"rests{unlike}."
     )
 
 

@@ -13,6 +13,7 @@ from matstd.report.scenes import Scene, draw_standard, draw_volumes, standard_sc
 from matstd.report.scenes.renderer import picture_axes
 from matstd.report.scenes.volume_scene import PIXELS, composed, eye
 from matstd.twin.errors import DesignError, MissingLibrary, ShapeMismatch
+from matstd.twin.frames import outward
 
 READINGS = (
     np.linspace(-150.0, 150.0, 5),
@@ -160,7 +161,7 @@ def test_every_visible_name_of_a_standard_has_room_of_its_own(upright, view):
 
     The renderer leaves out names that meet.
     """
-    eye_of, pixel = standard_scene._eye(standard_scene._VIEWS[view]), 0.6
+    eye_of, pixel = outward(*np.radians(standard_scene._VIEWS[view])), 0.6
     right, up = picture_axes(eye_of)
     first = upright.spheres[0]
     behind = first.centre - 40.0 * eye_of + (first.radius + 1.0) * up

@@ -5,6 +5,6 @@ a material, so a `beam` is stated by the user and never proposed.
 """
 
 from matstd.twin.elastic.body import short_beams as short_beams
+from matstd.twin.elastic.materials import MATERIALS as MATERIALS
 from matstd.twin.elastic.materials import Material as Material
 from matstd.twin.elastic.materials import material as material
-from matstd.twin.elastic.materials import material_names as material_names

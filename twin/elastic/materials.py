@@ -78,8 +78,3 @@ def material(word: str) -> Material | None:
         expansion_source=expansion_source,
         hardness=hardness,
     )
-
-
-def material_names() -> tuple[str, ...]:
-    """Names of all materials."""
-    return tuple(MATERIALS)
