@@ -106,6 +106,12 @@ class Standard(Displayed):
         sag = Sag(source, down, share, per_weight, modulus=modulus)
         return replace(self, sag=sag)
 
+    @cached_property
+    def top(self) -> float:
+        """Height of the highest ball or face above the seat, mm."""
+        tops = [float(p.point(p.grid())[:, 2].max()) for p in self.patches]
+        return max([*tops, *(float(s.centre[2] + s.radius) for s in self.spheres)])
+
     @property
     def remarks(self) -> tuple[str, ...]:
         """Nonconforming characteristics that were accepted at its calibration, missing values."""

@@ -60,7 +60,7 @@ def dmis_program(
     """
     if len(standard.spheres) < 3:
         raise NotEnoughData(f"'{standard.name}' has {len(standard.spheres)} balls, 3 align it")
-    high = body_top(standard) + LIFT
+    high = standard.top + LIFT
     touched = {s.name: ball_points(s.centre, s.radius) for s in standard.spheres}
     touched |= {p.name: face_points(standard, p.name) for p in standard.patches}
     balls = [s.name for s in standard.spheres]
@@ -134,12 +134,6 @@ class _Writer:
         self.angle = angle
         free = self.high + 2.0 * TO_PIVOT
         return [f"  GOTO/CART,0.0000,0.0000,{free:.4f}", f"SNSLCT/S({angle.label})"]
-
-
-def body_top(standard: Standard) -> float:
-    """Height of the highest feature, mm."""
-    tops = [float(p.point(p.grid()).max(axis=0)[2]) for p in standard.patches]
-    return max([*tops, *(float(s.centre[2] + s.radius) for s in standard.spheres)])
 
 
 def ball_points(centre: Array, radius: float) -> tuple[Array, Array]:

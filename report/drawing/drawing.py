@@ -80,7 +80,7 @@ def draw_sheet(standard: Standard, details: Details, issuer: Issuer) -> Sheet:
         draw_from(sheet, views.front, standard, details, np.array([0.0, 1.0, 0.0]))
         draw_from(sheet, views.left, standard, details, np.array([1.0, 0.0, 0.0]))
         draw_top(sheet, views.top, standard, details)
-        draw_dimensions(sheet, views, standard, tallest(standard))
+        draw_dimensions(sheet, views, standard, standard.top)
         draw_datums(sheet, views, standard, details)
         draw_tolerances(sheet, views, standard, details)
         draw_axes(sheet, views.top)
@@ -92,16 +92,9 @@ def draw_sheet(standard: Standard, details: Details, issuer: Issuer) -> Sheet:
     raise NotBuildable(f"'{standard.name}' finds no room on a sheet of A0")
 
 
-def tallest(standard: Standard) -> float:
-    """Height of the highest ball or face above the seat, mm."""
-    tops = [s.centre[2] + s.radius for s in standard.spheres]
-    tops += [float(p.point(p.grid())[:, 2].max()) for p in standard.patches]
-    return float(max(tops))
-
-
 def _formats(standard: Standard) -> Iterable[tuple[Paper, float]]:
     """Papers and scales at which the views fit, the smallest paper first; small scales last."""
-    (a, b), tall = standard.base.half_size, tallest(standard)
+    (a, b), tall = standard.base.half_size, standard.top
     for scales in ([s for s in _SCALES if s >= _SMALLEST], [s for s in _SCALES if s < _SMALLEST]):
         for paper in PAPERS:
             wide = paper.width - _LEFT - _APART - _DATUM_MARGIN - COLUMN - 10.0
@@ -113,7 +106,7 @@ def _formats(standard: Standard) -> Iterable[tuple[Paper, float]]:
 
 def _views(paper: Paper, standard: Standard, scale: float) -> Views:
     a, b = standard.base.half_size
-    floor = paper.height - _ABOVE - scale * tallest(standard)
+    floor = paper.height - _ABOVE - scale * standard.top
     front = View(_LEFT + scale * a, floor, scale)
     left = View(_LEFT + scale * (2 * a + b) + _APART, floor, scale)
     return Views(front, left, View(front.x, floor - _BETWEEN - scale * b, scale))
