@@ -1,12 +1,10 @@
 """STEP AP242 out, through calls whose settings are ours."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from OCP.APIHeaderSection import APIHeaderSection_MakeHeader
 from OCP.gp import gp_Trsf, gp_Vec
@@ -23,10 +21,6 @@ from matstd.cad_out.kernel.pmi import add_diameter, add_notes, add_tolerances, s
 from matstd.cad_out.kernel.xcaf import new_document, set_name, settings, text
 from matstd.twin.errors import NotBuildable
 from matstd.twin.versions import versions
-
-if TYPE_CHECKING:
-    from matstd.cad_out.kernel.assembly import Product
-
 
 TIME_STAMP = "2000-01-01T00:00:00"  # in every STEP file: the same standard gives the same bytes
 

@@ -1,6 +1,7 @@
 """Semantic product manufacturing information: datums, tolerances, sizes and notes of products."""
 
 from collections.abc import Sequence
+from functools import partial
 from typing import Any
 
 from OCP.BRep import BRep_Builder
@@ -32,7 +33,7 @@ from OCP.XCAFDoc import (
 )
 
 from matstd.cad_out.details import CALIBRATED, DATUMS, Tolerance
-from matstd.cad_out.kernel.xcaf import name_of, text
+from matstd.cad_out.kernel.xcaf import labels_of, name_of, text
 from matstd.twin.frames import Array
 
 _KINDS = {
@@ -154,19 +155,13 @@ def read_tolerances(document: Any) -> list[Tolerance]:
         getattr(XCAFDimTolObjects_GeomToleranceType, f"XCAFDimTolObjects_GeomToleranceType_{k}"): w
         for w, k in _KINDS.items()
     }
-    labels, found = Sequence_TDF_Label(), list[Tolerance]()
-    # sequences of the kernel count from 1
-    tool.GetGeomToleranceLabels(labels)
-    for i in range(1, labels.Length() + 1):
-        label = labels.Value(i)
+    found = []
+    for label in labels_of(tool.GetGeomToleranceLabels):
         about = XCAFDoc_GeomTolerance.Set_s(label).GetObject()
         first, second = Sequence_TDF_Label(), Sequence_TDF_Label()
         XCAFDoc_DimTolTool.GetRefShapeLabel_s(label, first, second)
-        datums = Sequence_TDF_Label()
-        XCAFDoc_DimTolTool.GetDatumWithObjectOfTolerLabels_s(label, datums)
-        letters = [
-            XCAFDoc_Datum.Set_s(datums.Value(k)).GetObject() for k in range(1, datums.Length() + 1)
-        ]
+        datums = labels_of(partial(XCAFDoc_DimTolTool.GetDatumWithObjectOfTolerLabels_s, label))
+        letters = [XCAFDoc_Datum.Set_s(datum).GetObject() for datum in datums]
         letters.sort(key=lambda datum: datum.GetPosition())
         found.append(
             Tolerance(
@@ -188,10 +183,8 @@ def read_signs(document: Any) -> dict[str, tuple[float, float, float, float]]:
         (tool.GetDatumLabels, XCAFDoc_Datum),
         (tool.GetDimensionLabels, XCAFDoc_Dimension),
     ):
-        labels = Sequence_TDF_Label()
-        listed(labels)
-        for i in range(1, labels.Length() + 1):
-            about = attribute.Set_s(labels.Value(i)).GetObject()
+        for label in labels_of(listed):
+            about = attribute.Set_s(label).GetObject()
             if about.GetPresentation() is not None:
                 lines = GProp_GProps()
                 BRepGProp.LinearProperties_s(about.GetPresentation(), lines)

@@ -1,6 +1,7 @@
 """STEP files re-read by the kernel, and the triangulation of its solids."""
 
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +11,6 @@ from OCP.BRepAdaptor import BRepAdaptor_Curve, BRepAdaptor_Curve2d, BRepAdaptor_
 from OCP.BRepMesh import BRepMesh_IncrementalMesh
 from OCP.BRepTools import BRepTools
 from OCP.collections import IndexedMap_TopoDS_Shape_TopTools_ShapeMapHasher as IndexedMap
-from OCP.collections import Sequence_TDF_Label
 from OCP.GeomAbs import GeomAbs_CurveType, GeomAbs_SurfaceType
 from OCP.gp import gp_Pnt
 from OCP.IFSelect import IFSelect_ReturnStatus
@@ -40,7 +40,7 @@ from matstd.cad_out.kernel.faces import (
     volume,
 )
 from matstd.cad_out.kernel.pmi import notes_of_label, read_signs, read_tolerances
-from matstd.cad_out.kernel.xcaf import name_of, new_document, settings
+from matstd.cad_out.kernel.xcaf import labels_of, name_of, new_document, settings
 from matstd.cad_out.triangles import (
     Chart,
     Edge,
@@ -109,9 +109,7 @@ def read_step(path: Path) -> Reread:
     document = new_document()
     reader.Transfer(document)
     tool = XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
-    free = Sequence_TDF_Label()
-    tool.GetFreeShapes(free)
-    wholes = [free.Value(i) for i in range(1, free.Length() + 1)]
+    wholes = labels_of(tool.GetFreeShapes)
     solids = [s for whole in wholes for s in solids_of(XCAFDoc_ShapeTool.GetShape_s(whole))]
     counted: dict[str, int] = {}
     names: set[str] = set()
@@ -119,7 +117,8 @@ def read_step(path: Path) -> Reread:
     for whole in wholes:
         for part in _parts(whole):
             counted[name_of(part)] = counted.get(name_of(part), 0) + 1
-            names |= _face_names(part)
+            faces = labels_of(partial(XCAFDoc_ShapeTool.GetSubShapes_s, part))
+            names |= {name_of(face) for face in faces} - {""}
             notes += notes_of_label(part)
     return Reread(
         solids=len(solids),
@@ -141,20 +140,12 @@ def _parts(whole: Any) -> list[Any]:
     """Labels of the parts of an assembly, one for each instance."""
     if not XCAFDoc_ShapeTool.IsAssembly_s(whole):
         return [whole]
-    components = Sequence_TDF_Label()
-    XCAFDoc_ShapeTool.GetComponents_s(whole, components, False)
     found = []
-    for i in range(1, components.Length() + 1):
+    for component in labels_of(lambda out: XCAFDoc_ShapeTool.GetComponents_s(whole, out, False)):
         part = TDF_Label()
-        XCAFDoc_ShapeTool.GetReferredShape_s(components.Value(i), part)
+        XCAFDoc_ShapeTool.GetReferredShape_s(component, part)
         found += _parts(part)
     return found
-
-
-def _face_names(part: Any) -> set[str]:
-    subs = Sequence_TDF_Label()
-    XCAFDoc_ShapeTool.GetSubShapes_s(part, subs)
-    return {name_of(subs.Value(i)) for i in range(1, subs.Length() + 1)} - {""}
 
 
 def tessellate(shape: Any, chord: float) -> tuple[Array, np.ndarray, np.ndarray]:

@@ -1,7 +1,9 @@
 """What the writer and the reader of STEP files share: documents, labels and their names."""
 
+from collections.abc import Callable
 from typing import Any
 
+from OCP.collections import Sequence_TDF_Label
 from OCP.Interface import Interface_Static
 from OCP.STEPCAFControl import STEPCAFControl_Controller
 from OCP.STEPControl import STEPControl_Controller
@@ -46,6 +48,13 @@ def name_of(label: Any) -> str:
         return ""
     label.FindAttribute(TDataStd_Name.GetID_s(), name)
     return str(name.Get().ToExtString())
+
+
+def labels_of(fill: Callable[[Any], object]) -> list[Any]:
+    """Labels that a call of the kernel lists; its sequences count from 1."""
+    found = Sequence_TDF_Label()
+    fill(found)
+    return [found.Value(i) for i in range(1, found.Length() + 1)]
 
 
 def text(value: str) -> Any:
