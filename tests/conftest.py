@@ -38,22 +38,26 @@ pytest_plugins = [
 
 
 LONGEST = (
-    "matstd/test_design.py",
     "test_door.py",
+    "matstd/test_design.py",
     "diagnosis/test_laws.py",
-    "report/test_live_page.py",
-    "diagnosis/test_hidden_effects.py",
-    "diagnosis/test_several_runs.py",
+    "report/test_diagnosis_pictures.py",
     "cad_out/test_files_stay.py",
+    "diagnosis/test_several_runs.py",
+    "diagnosis/test_hidden_effects.py",
     "diagnosis/test_files_and_commands.py",
-    "diagnosis/test_reported_set.py",
+    "matstd/test_reach.py",
+    "matstd/test_seat.py",
     "probe_paths/test_simulate.py",
-    "matstd/test_measure_commands.py",
     "diagnosis/test_other_run.py",
-    "report/test_scenes.py",
+    "matstd/test_measure_commands.py",
     "test_examples_diagnosis.py",
+    "diagnosis/test_reported_set.py",
+    "test_examples.py",
+    "test_examples_runs.py",
+    "report/test_scenes.py",
 )
-"""Files of more than seven seconds: begun first, so that no worker waits for one at the end; left
+"""Files of more than six seconds: begun first, so that no worker waits for one at the end; left
 to itself, xdist begins with the files of most tests."""
 
 
@@ -66,6 +70,7 @@ TOGETHER = (
         "tests/test_formats.py",
     ),
     ("tests/diagnosis/test_laws.py", "tests/report/test_live_laws.py"),  # `stylus`
+    ("tests/test_door.py", "tests/matstd/test_whole_commands.py"),  # `workshop`
 )
 """Folders and files that one worker has, because they share what takes seconds to make."""
 

@@ -89,7 +89,8 @@ def by_name(path: Path) -> dict[str, Verdict]:
     return {f"{v.feature} {v.characteristic}": v for v in known.verdicts}
 
 
-def test_a_piece_as_drawn_conforms(seven_balls, drawn, capsys, unchanged):
+def test_a_piece_as_drawn_conforms(seven_balls, drawn, capsys, monkeypatch, unchanged):
+    monkeypatch.setenv("COLUMNS", "100")
     code, out = calibrate(drawn, measured(drawn))
     assert code == 0
     found = by_name(out)

@@ -132,6 +132,7 @@ def test_a_function_of_two_readings_is_not_taken_for_one_of_a_single_reading() -
     assert error_left(fit_beside(own, second, model)) > error_left(fit_beside(0.0, second, model))
 
 
+@pytest.mark.slow
 def test_a_pulse_over_time_is_no_law_over_a_temperature_that_follows_the_time() -> None:
     rng = np.random.default_rng([8802, 4])
     texts = law_case(rng, "fork", "lubrication")
@@ -142,6 +143,7 @@ def test_a_pulse_over_time_is_no_law_over_a_temperature_that_follows_the_time() 
     assert not found.laws[0].travels
 
 
+@pytest.mark.slow
 def test_a_set_up_that_cells_left_out_extrapolate_refuses_no_law() -> None:
     texts = law_case(np.random.default_rng([60611, 9]), "hmc1995", "temperature_position")
     run, second, free = (read_back(text, MACHINES["hmc1995"]) for text in texts[:3])
@@ -152,6 +154,7 @@ def test_a_set_up_that_cells_left_out_extrapolate_refuses_no_law() -> None:
     assert second_run(found, second).learnt < 1.1 * true < 0.9 * second_run(found, second).without
 
 
+@pytest.mark.slow
 def test_a_factor_that_hardly_changes_is_left_out_of_a_product() -> None:
     text, *_ = law_case(np.random.default_rng([60611, 11]), "fork", "chiller")
     (saw,) = [one.law for one in learn_laws(read_back(text, MACHINES["fork"])).laws]

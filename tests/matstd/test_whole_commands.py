@@ -96,20 +96,29 @@ def sizes(folder) -> str:
     )
 
 
+@pytest.fixture(scope="module")
+def files(workshop, tmp_path_factory):
+    """The files of the workshop, and what commands want beside them."""
+    place = shutil.copytree(workshop, tmp_path_factory.mktemp("commands") / "here")
+    text = (place / "project.toml").read_text(encoding="utf-8").replace("poses = 2000", FEW)
+    (place / "project.toml").write_text(text + sizes(place), encoding="utf-8")
+    (place / "drifts.csv").write_text("time_min,z_um,u_um\n60,2.5,0.5\n121,3,0.5\n")
+    shutil.copy(EXAMPLES / "task.toml", place)
+    (place / "part.ngc").write_text(PROGRAM, encoding="utf-8")
+    (place / "poses.csv").write_text(POSES, encoding="utf-8")
+    (place / "errors.toml").write_text(bench.ERRORS, encoding="utf-8")
+    return place
+
+
 @pytest.fixture
-def there(workshop, tmp_path, monkeypatch):
-    """The files of the workshop for one command."""
-    shutil.copytree(workshop, tmp_path, dirs_exist_ok=True)
-    monkeypatch.chdir(tmp_path)
+def there(files, monkeypatch):
+    """The same for one command, with the time of each; what the command makes goes."""
+    monkeypatch.chdir(files)
     monkeypatch.setenv("COLUMNS", "100")
-    text = (tmp_path / "project.toml").read_text(encoding="utf-8").replace("poses = 2000", FEW)
-    (tmp_path / "project.toml").write_text(text + sizes(tmp_path), encoding="utf-8")
-    (tmp_path / "drifts.csv").write_text("time_min,z_um,u_um\n60,2.5,0.5\n121,3,0.5\n")
-    shutil.copy(EXAMPLES / "task.toml", tmp_path)
-    (tmp_path / "part.ngc").write_text(PROGRAM, encoding="utf-8")
-    (tmp_path / "poses.csv").write_text(POSES, encoding="utf-8")
-    (tmp_path / "errors.toml").write_text(bench.ERRORS, encoding="utf-8")
-    return tmp_path
+    before = {p: p.stat().st_mtime_ns for p in files.rglob("*")}
+    yield files, before
+    for path in sorted(set(files.rglob("*")) - before.keys(), reverse=True):
+        path.rmdir() if path.is_dir() else path.unlink()
 
 
 @pytest.mark.parametrize("words", COMMANDS_ON.values(), ids=COMMANDS_ON)
@@ -117,14 +126,11 @@ def test_what_a_command_prints_and_writes(
     words, there, rendered_alone, monkeypatch, capsys, unchanged
 ) -> None:
     figures, scenes = rendered_alone(), scenes_alone(monkeypatch)
-    before = {p: p.stat().st_mtime_ns for p in there.rglob("*")}
+    folder, before = there
     for one in words.split("; "):
         assert main(one.split()) == 0
-    for path, time in before.items():
-        if path.is_file() and path.stat().st_mtime_ns == time:
-            path.unlink()
     printed = re.sub(r"(?m)\s+$", "", capsys.readouterr().out)
-    text = "\n".join([printed, folder_text(there, figures), *scenes, ""])
+    text = "\n".join([printed, folder_text(folder, figures, before), *scenes, ""])
     unchanged(UNSTABLE.sub("", text))
 
 
