@@ -20,6 +20,8 @@ TIME_BLOCKS, PLACE_BLOCKS = 10, 5
 CELLS = 2, 4
 """Parts of the range of either variable of a law of two: touches of a cell of both are left out."""
 
+LARGEST = 50  # part of the touches, those that a formula moves most, which are left out together
+
 THIRDS, MIN_OTHERS = 3, 2
 """Parts of the readings of every other axis that are left out one after the other, and the least
 number of such axes that refute a curve."""
@@ -60,16 +62,14 @@ def stands_beside_memory(
     start: Beginning,
     laws: Sequence[Law],
     law: Law,
-    score: float,
-    white: tuple[Fit, Fit],
+    charge: float,
     policy: LawPolicy,
 ) -> bool:
     """Whether a law explains more than noise does that remembers, where there is such noise."""
     if start.memory is None:
         return True
-    charged = log_odds(white[1], white[0], 0.0) - score
     after = start.fitted([*laws, law])
-    return log_odds(after, start.fitted(laws, gross=after.gross), charged) > policy.min_score
+    return log_odds(after, start.fitted(laws, gross=after.gross), charge) > policy.min_score
 
 
 def memory_left(fit: Fit, before: Memory) -> Memory | None:
@@ -117,6 +117,21 @@ def _beyond_model(model: Fit, fit: Fit, groups: Sequence[IntArray]) -> float:
     own = zip(inside, _within(model, groups), strict=True)
     each = [(error[rows], model.solution.Q[there]) for rows, there in own]
     return sum(float(e @ e - np.sum((e @ Q) ** 2)) for e, Q in each)
+
+
+def holds_where_largest(before: Fit, after: Fit, law: Law, policy: LawPolicy) -> bool:
+    """Whether the touches that a formula moves most, left out, do not speak against it.
+
+    Two exponentials that grow towards a corner imitated a wave along the diagonal of two axes, and
+    predicted a second run, which went farther into it, with 1.63 µm instead of 1.04 without a law.
+    """
+    if law.is_curve_alone:
+        return True
+    rows = np.flatnonzero(before.used)
+    amount = np.abs(np.stack(law.amounts(before.run.touches), axis=1)).max(axis=1)[rows]
+    groups = _same([rows[np.argsort(-amount, kind="stable")][: len(rows) // LARGEST + 1]], after)
+    more = _beyond_model(before, after, groups) - _beyond_model(before, before, groups)
+    return 0.5 * more < policy.min_score
 
 
 def holds_elsewhere(before: Fit, after: Fit, law: Law) -> bool:

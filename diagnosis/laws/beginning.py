@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from matstd.diagnosis.fit import Fit, Prior, fit_run, prior_for
+from matstd.diagnosis.laws.space import Space
 from matstd.diagnosis.regression import GrossErrors, Memory
 from matstd.twin.library import ordinary_model
 from matstd.twin.model import Effect, Model
@@ -76,12 +77,5 @@ def log_odds(one: Fit, other: Fit, charged: float) -> float:
     Args:
         charged: What the first is charged more than the second.
     """
-    left = [_left(fit) for fit in (one, other)]
-    freedom = max(other.solution.dof, 1.0)
-    return float(0.5 * freedom * np.log(left[1] / left[0]) - charged)
-
-
-def _left(fit: Fit) -> float:
-    """Squared residual over the stated uncertainty, the prior's part included."""
-    both = np.concatenate([fit.solution.residual, fit.solution.phi])
-    return float(both @ both) * (fit.noise.factor * fit.weight) ** 2
+    left = Space.of(other)
+    return float(left.gained(np.array(left.square - Space.of(one).square))) - charged

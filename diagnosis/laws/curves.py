@@ -41,6 +41,7 @@ class Evidence(NamedTuple):
     """Log evidence of curves at several carriers, (M,)."""
 
     value: Array
+    explained: Array  # squared residual that the best explains
     which: Array  # number of the best length
     size: Array  # best size, in units of the noise
 
@@ -163,29 +164,30 @@ def curve_evidence(
         weights: Prior deviations for every length, (L, K).
         least: Evidence below which it need not be exact: every second size is tried there.
     """
-    each = np.full((len(b), len(weights), len(SIZES)), -np.inf)
-    each[:, :, ::2] = _by_size(space, G, b, weights, SIZES[::2])
-    near = each.max(axis=(1, 2)) > least - BETWEEN_SIZES
+    each = np.full((2, len(b), len(weights), len(SIZES)), -np.inf)
+    each[..., ::2] = _by_size(space, G, b, weights, SIZES[::2])
+    near = each[0].max(axis=(1, 2)) > least - BETWEEN_SIZES
     if near.any():
-        each[near, :, 1::2] = _by_size(space, G[near], b[near], weights, SIZES[1::2])
-    flat = each.reshape(len(b), -1)
-    best = np.argmax(flat, axis=1)
+        each[:, near, :, 1::2] = _by_size(space, G[near], b[near], weights, SIZES[1::2])
+    values, explained = each.reshape(2, len(b), -1)
+    best = np.argmax(values, axis=1)
     return Evidence(
-        value=flat[np.arange(len(b)), best] - CURVE_CHARGE,
+        value=values[np.arange(len(b)), best] - CURVE_CHARGE,
+        explained=explained[np.arange(len(b)), best],
         which=best // len(SIZES),
         size=SIZES[best % len(SIZES)],
     )
 
 
 def _by_size(space: Space, G: Array, b: Array, weights: Array, sizes: Array) -> Array:
-    """Log evidence of curves for every length and size, nothing charged, (M, L, sizes).
+    """Log evidence of curves, nothing charged, and what they explain, (2, M, L, sizes).
 
     ``log p(y) = -1/2 log det(1 + s^2 G) - nu/2 log(y^T (1 + s^2 C C^T)^-1 y)``, both from one
     Cholesky factor of ``1 + s^2 G`` bordered by ``s b``: its last pivot holds what is explained.
     """
     M, K = b.shape
     s2 = sizes**2
-    out = np.empty((M, len(weights), len(sizes)))
+    out = np.empty((2, M, len(weights), len(sizes)))
     bordered = np.empty((M, len(sizes), K + 1, K + 1))
     for i, w in enumerate(weights):
         wb = w * b
@@ -195,5 +197,6 @@ def _by_size(space: Space, G: Array, b: Array, weights: Array, sizes: Array) -> 
         bordered[..., K, K] = corner
         pivots = np.diagonal(np.linalg.cholesky(bordered), axis1=2, axis2=3)
         explained = corner - pivots[..., K] ** 2
-        out[:, i] = space.gained(explained) - np.log(pivots[..., :K]).sum(axis=2)
+        out[0, :, i] = space.gained(explained) - np.log(pivots[..., :K]).sum(axis=2)
+        out[1, :, i] = explained
     return out

@@ -12,6 +12,7 @@ from matstd.diagnosis.laws.acceptance import (
     held_out,
     holds_between,
     holds_elsewhere,
+    holds_where_largest,
     memory_left,
     memory_score,
     predicts_better,
@@ -79,7 +80,6 @@ def learn_beside(
     ground = ground or Ground.of(start.run)
     current = start.fit
     laws: list[LearntLaw] = []
-    charges: list[float] = []
     is_enough = int(current.used.sum()) >= MIN_TOUCHES_OF_LAW
     tried = _Tried(None, current, current, None if is_enough else Refusal.FEW)
     for _ in range(policy.most_laws if is_enough else 0):
@@ -97,8 +97,7 @@ def learn_beside(
         if tried.best is None or not tried.is_kept:
             break
         laws.append(tried.best)
-        charges.append(log_odds(tried.fit, tried.before, tried.best.score))
-        current = _each_anew(white, laws, charges, tried.fit, policy, ground)
+        current = _each_anew(white, laws, tried.fit, policy, ground)
     if laws:
         seen = start.run.touches[current.used]
         laws = [_of_its_run(one, seen, policy) for one in laws]
@@ -183,7 +182,6 @@ def _of_its_run(one: LearntLaw, seen: Touches, policy: LawPolicy) -> LearntLaw:
 def _each_anew(
     white: Beginning,
     laws: list[LearntLaw],
-    charges: list[float],
     fit: Fit,
     policy: LawPolicy,
     ground: Ground,
@@ -195,7 +193,6 @@ def _each_anew(
 
     Args:
         laws: Those that were learnt; the last one with all others in place. Changed in place.
-        charges: What each was charged; changed with them.
         fit: With all of them.
     """
     waiting = set(range(len(laws) - 1))
@@ -212,11 +209,10 @@ def _each_anew(
             continue
         is_same = best.law.name == laws[i].law.name
         margin = 0.0 if is_same else policy.shorter
-        if best.score < log_odds(fit, base, charges[i]) + margin:
+        if best.score < log_odds(fit, base, laws[i].charge) + margin:
             continue
         laws[i] = replace(best, library=laws[i].library, memory=laws[i].memory)
         fit = white.fitted([one.law for one in laws])
-        charges[i] = log_odds(fit, base, best.score)
         waiting |= set() if is_same else others
     return fit
 
@@ -236,9 +232,10 @@ def _refusal(
     if best.score < policy.min_score:
         return Refusal.CHANCE
     holds = holds_between(*white, best.law) and holds_elsewhere(*white, best.law)
+    holds = holds and holds_where_largest(*white, best.law, policy)
     if not holds or not predicts_better(*white):
         return Refusal.PREDICTION
-    if not stands_beside_memory(start, laws, best.law, best.score, white, policy):
+    if not stands_beside_memory(start, laws, best.law, best.charge, policy):
         return Refusal.MEMORY
     return None
 
@@ -273,6 +270,7 @@ def _learnt(searched: Searched, beside: Sequence[Law]) -> LearntLaw | None:
         law=law,
         alike=tuple(alike),
         score=first.score,
+        charge=float(searched.space.gained(np.array(first.explained))) - first.score,
         curve=searched.curve,
         drift=searched.drift,
         rivals=tuple(sorted(rivals, key=lambda r: r.log_odds)),

@@ -38,6 +38,7 @@ class LearntLaw:
     law: Law  # with the parameters of its shapes
     alike: tuple[Carrier, ...]  # carriers that do the same at every touch of this run
     score: float  # log evidence that it gains, all charges taken off
+    charge: float  # these charges: its parameters, and the choice among so many laws
     curve: float  # that of the best law without a formula
     drift: float  # that of a driver which was not recorded but is smooth in time
     # other laws, the nearest first; those within the policy's odds are its class

@@ -2,20 +2,20 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
-from itertools import pairwise
 
 import numpy as np
 
 from matstd.diagnosis.fit import Fit, Prior
 from matstd.diagnosis.laws.beginning import Beginning, log_odds
 from matstd.diagnosis.laws.learn import learn_beside
-from matstd.diagnosis.laws.learnt import Learning
+from matstd.diagnosis.laws.learnt import Learning, LearntLaw
 from matstd.diagnosis.laws.library import charge_of
 from matstd.diagnosis.laws.policy import POLICY, LawPolicy
 from matstd.diagnosis.laws.search import Ground
 from matstd.diagnosis.regression import GrossErrors
 from matstd.twin.compute import one_blas_thread
-from matstd.twin.model import Effect
+from matstd.twin.frames import Array
+from matstd.twin.model import Effect, traits
 
 IMITATORS = ("thermal-lag", "drift", "artefact-slip", "position-table")
 """Kinds that take the shape of many a law over time or place, and leave nothing of it."""
@@ -64,15 +64,25 @@ def learn_remainder(
 
 
 def _odds(alone: Learning, beside: Learning, found: Sequence[Effect]) -> float:
-    """Log odds of laws alone against effects with what was learnt beside them, on the same rows."""
-    rows = alone.after.gross.rows | beside.after.gross.rows
-    gross = replace(alone.after.gross, rows=rows)
-    fits = [_white(one, len(one.laws), gross) for one in (alone, beside)]
-    charges = [_charges(one, gross) for one in (alone, beside)]
+    """Log odds of laws alone against effects with what was learnt beside them, on the same rows.
+
+    Tables are curves, against which fewer parameters decide. An effect with a cause that explains
+    the run as well as a law with fewer parameters is that cause: a slip that turns nothing is a
+    step of a displacement. Laws must therefore explain more than such effects, nothing charged.
+    """
+    both = (alone, beside)
+    gross = replace(alone.after.gross, rows=alone.after.gross.rows | beside.after.gross.rows)
+    count = len(alone.before.model.parameters)
+    factor = np.maximum(*(one.after.prior.factor[:count] for one in both))
+    fits = [_white(one, one.laws, factor, gross) for one in both]
+    charges = [sum(law.charge for law in one.laws) for one in both]
     touches, freedom = alone.before.run.touches, max(fits[1].solution.dof, 1.0)
     before = beside.before
     named = sum(charge_of(e, touches, freedom, _determined(before, e)) for e in found)
-    return log_odds(fits[0], fits[1], charges[0] - charges[1] - named)
+    odds = log_odds(fits[0], fits[1], charges[0] - charges[1] - named)
+    if any(traits(e).is_table for e in found):
+        return odds
+    return min(odds, log_odds(fits[0], _white(beside, (), factor, gross), 0.0))
 
 
 def _determined(fit: Fit, effect: Effect) -> float:
@@ -85,14 +95,18 @@ def _determined(fit: Fit, effect: Effect) -> float:
     return float(np.clip(1.0 - u2 / fit.prior.sd[rows] ** 2, 0.0, 1.0).sum())
 
 
-def _white(learning: Learning, count: int, gross: GrossErrors) -> Fit:
-    """The model with the first laws, in white noise, on given rows."""
-    laws = [one.law for one in learning.laws[:count]]
-    return replace(learning.beginning, memory=None).fitted(laws, gross=gross)
+def _white(
+    learning: Learning, learnt: Sequence[LearntLaw], factor: Array, gross: GrossErrors
+) -> Fit:
+    """The model with laws in white noise, on given rows, with one prior of the geometry.
 
-
-def _charges(learning: Learning, gross: GrossErrors) -> float:
-    """What all laws were charged: what each gains less its score."""
-    fits = [_white(learning, k, gross) for k in range(len(learning.laws) + 1)]
-    gains = [log_odds(after, before, 0.0) for before, after in pairwise(fits)]
-    return sum(gains) - sum(one.score for one in learning.laws)
+    Args:
+        factor: On what is expected of the class of machine, of the first parameters.
+    """
+    start = learning.beginning
+    assert start.prior is not None  # it follows a search
+    each = np.pad(factor, (0, len(start.prior) - len(factor)), constant_values=1.0)
+    narrowed = each if factor.min(initial=1.0) < 1.0 else None
+    prior = Prior(start.prior.mean, each[:, None] * start.prior.root, narrowed)
+    white = replace(start, memory=None, prior=prior, is_known=True)
+    return white.fitted([one.law for one in learnt], gross=gross)

@@ -54,6 +54,7 @@ class Found(NamedTuple):
     bearer: Bearer
     drivers: tuple[Driver, ...]
     evidence: float
+    explained: float  # squared residual
     length: float  # correlation length, as a share of the domain; 0: no curve, a direction
     size: float  # of the curve, mm or rad
 
@@ -121,6 +122,7 @@ def by_evidence(space: Space, curves: Curves, least: float = -np.inf) -> list[Fo
                     bearer=bearer,
                     drivers=waves.drivers,
                     evidence=float(found.value[i]),
+                    explained=float(found.explained[i]),
                     length=waves.lengths[int(found.which[i])],
                     size=size,
                 )
@@ -146,15 +148,16 @@ def _unit(x: Array, driver: Driver) -> float:
     return float(np.abs(x - driver.zero).max()) or 1.0
 
 
-def evidence_of(space: Space, C: Array, waves: Waves) -> tuple[float, float, float]:
-    """Log evidence of a curve at columns of a carrier (N, k), with its length and its size."""
+def evidence_of(space: Space, C: Array, waves: Waves) -> tuple[float, float, float, float]:
+    """Log evidence of a curve at columns of a carrier (N, k), what it explains, length and size."""
     group = Group((C * space.used[:, None])[None])
     U = space.basis.T @ (group.C[0][:, :, None] * waves.B[:, None, :]).reshape(len(C), -1)
     weights = np.tile(waves.weights, (1, C.shape[1]))
     G = group.gram(waves.B) - U.T @ U
     found = curve_evidence(space, G, group.right_side(space.r, waves.B), weights)
     size = float(found.size[0] / max(group.scale[0], 1e-300))
-    return float(found.value[0]), waves.lengths[int(found.which[0])], size
+    length = waves.lengths[int(found.which[0])]
+    return float(found.value[0]), float(found.explained[0]), length, size
 
 
 def _is_sensible(one: Driver, other: Driver) -> bool:
@@ -306,16 +309,19 @@ def _quick_frequencies(driver: Driver, x: Array) -> Array:
     return np.asarray(np.arange(8.0, limit, 0.5) / np.ptp(x))
 
 
-def modulations(space: Space, field: Field, C: Array) -> list[tuple[Driver, float]]:
+def modulations(space: Space, field: Field, C: Array, first: Driver) -> list[tuple[Driver, float]]:
     """Variables on which the size of a law depends, by what a curve gains over none, best first.
 
     Args:
         C: Columns of a carrier times a shape, (N, k).
+        first: Variable of that shape.
     """
     constant = Waves((), np.ones((len(C), 1)), np.ones((1, 1)), (0.0,))
     plain = evidence_of(space, C, constant)[0]
     out = []
     for driver in field.drivers:
+        if driver != first and not _is_sensible(first, driver):
+            continue
         waves = waves_of(field, driver)
         if waves.lengths[0] == 0.0:
             B = np.hstack([constant.B, waves.B])

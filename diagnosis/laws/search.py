@@ -136,7 +136,7 @@ def search_law(space: Space, ground: Ground, policy: LawPolicy) -> Searched:
     near = _promising(scored, {(f.bearer.carrier.name, f.drivers): f.evidence for f in one})
     hopeful = [c for score, c in near if score + REFINING * _gain(c, space) > policy.min_score]
     polished = [refined(space, field, c) for c in hopeful] or [c for _, c in near[:1]]
-    polished += [refined(space, field, c) for c in _beside_best(space, field, polished)]
+    polished += _beside_best(space, field, polished)
     polished = _at_best_places(space, field, polished)
     polished += _with_edges(space, field, polished)
     polished = [_charged(c, field, policy) for c in _distinct(polished)]
@@ -264,7 +264,7 @@ def _modulated(space: Space, grids: Grids, found: Sequence[Candidate]) -> list[C
     for one in sorted(found, key=lambda c: -c.score)[:MODULATED]:
         part = _part(one.law, 0)
         C = spread(one.bearer.C, columns_of(field, space, [part]))
-        driver, gain = modulations(space, field, C)[0]
+        driver, gain = modulations(space, field, C, part.factor.driver)[0]
         if gain > MIN_GAIN_PAIR:
             ranked = sorted(
                 scan(space, grids, C, driver),
@@ -286,9 +286,11 @@ def _beside_best(space: Space, field: Field, found: Sequence[Candidate]) -> list
     if best is None:
         return []
     parts = [_part(best.law, i) for i in range(len(best.law.factors))]
-    others = [candidate(space, field, b, parts) for b in field.bearers if b is not best.bearer]
-    alone = [candidate(space, field, best.bearer, [part]) for part in parts if len(parts) > 1]
-    return [*sorted(others, key=lambda c: -c.score)[:PER_DRIVER], *alone]
+    out = list[Candidate]()
+    for own in (parts, *([part] for part in parts if len(parts) > 1)):
+        others = [candidate(space, field, bearer, own) for bearer in field.bearers]
+        out += sorted(others, key=lambda c: -c.score)[: PER_DRIVER + 1]
+    return [refined(space, field, c) if c.score > best.score - FAR else c for c in out]
 
 
 def _distinct(found: Sequence[Candidate]) -> list[Candidate]:
@@ -334,7 +336,8 @@ def _curves(
     for f in one:
         if f.length > 0.0:  # else the variable is a direction, or has two values
             score = f.evidence - policy.tried_singles
-            out.append(_curve(field, f.bearer, f.drivers[0], (f.length, f.size), score))
+            own = (f.length, f.size)
+            out.append(_curve(field, f.bearer, f.drivers[0], own, f.explained, score))
     products = [c for c in formulas if len(c.law.factors) == 2][:3]
     for c in products:
         for kept, other in ((0, 1), (1, 0)):
@@ -342,9 +345,10 @@ def _curves(
             waves = waves_of(field, driver)
             if waves.lengths[0] > 0.0:
                 C = spread(c.bearer.C, columns_of(field, space, [first]))
-                evidence, *size = evidence_of(space, C, waves)
+                evidence, explained, *size = evidence_of(space, C, waves)
                 charge = policy.tried_products + space.charge(len(first.factor.shape.free))
-                out.append(_curve(field, c.bearer, driver, size, evidence - charge, first))
+                score = evidence - charge
+                out.append(_curve(field, c.bearer, driver, size, explained, score, first))
     return out
 
 
@@ -359,6 +363,7 @@ def _curve(
     bearer: Bearer,
     driver: Driver,
     size: Sequence[float],
+    explained: float,
     score: float,
     *first: Part,
 ) -> Candidate:
@@ -371,5 +376,5 @@ def _curve(
     factors, places = zip(*first, curve, strict=True)
     law = Law(bearer.carrier, factors, tuple(v for own in places for v in own))
     return Candidate(
-        bearer=bearer, law=law, explained=0.0, parameters=len(law.parameters), score=score
+        bearer=bearer, law=law, explained=explained, parameters=len(law.parameters), score=score
     )

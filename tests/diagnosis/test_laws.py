@@ -12,6 +12,7 @@ import pytest
 from simulator import probe, run_text
 from simulator_case import Ordinary, read_back, visible_size
 from simulator_case import named as hidden_effect
+from simulator_effects import slip
 from simulator_experiment import MACHINES, STATED_NOISE, random_experiment
 from simulator_laws import drawn, law_case
 from written import folder_text
@@ -49,7 +50,7 @@ from matstd.diagnosis.laws.formulas import columns_of, scan, spread
 from matstd.diagnosis.laws.learn import _by_rival as weighed
 from matstd.diagnosis.laws.library import LibraryEffect
 from matstd.diagnosis.laws.remainder import _determined
-from matstd.diagnosis.laws.screening import _quick_frequencies, by_evidence
+from matstd.diagnosis.laws.screening import _quick_frequencies, by_evidence, modulations
 from matstd.diagnosis.laws.search import Ground, _curves
 from matstd.diagnosis.laws.space import Space
 from matstd.diagnosis.remarks import EffectOfOtherRun
@@ -220,7 +221,7 @@ def test_a_law_over_a_temperature_that_belongs_to_its_run_may_take_any_course_in
 )
 def test_why_a_law_belongs_to_its_run_is_said(name, said, stylus) -> None:
     law = parse_effect(name, stylus[1][0].touches.chain)
-    one = LearntLaw(law, (), score=np.log(20.0), curve=0.0, drift=0.0, rivals=())
+    one = LearntLaw(law, (), score=np.log(20.0), charge=0.0, curve=0.0, drift=0.0, rivals=())
     assert said in run_sentence(one)
 
 
@@ -250,6 +251,44 @@ def test_laws_are_learnt_in_the_place_of_imitators_alone(slipped) -> None:
     assert learn_remainder(searched.start, searched.start, is_left=False) is None
     named = _determined(searched.fit, searched.found[0])
     assert 1.0 < named <= len(searched.found[0].parameters)
+
+
+def test_a_formula_that_grows_into_a_corner_is_not_taken_for_a_wave_along_a_diagonal() -> None:
+    """It predicted a second run, which went farther into it, with 1.63 um instead of 1.04."""
+    texts = law_case(np.random.default_rng([71102, 14]), "fork", "diagonal")
+    run, second = (read_back(text, MACHINES["fork"]) for text in texts[:2])
+    found = second_run(learn_laws(run), second)
+    assert found.learnt < 1.02 * found.without
+
+
+def test_a_law_is_charged_its_parameters_and_the_choice_among_many(stylus) -> None:
+    """An amplitude and an instant, half a log of the observations each; a shape of one variable."""
+    found = stylus[2]
+    observations = Space.of(found.before).freedom
+    assert found.laws[0].charge == pytest.approx(np.log(observations) + POLICY.tried_singles)
+
+
+def test_a_slip_that_turns_nothing_is_not_withdrawn_for_a_step() -> None:
+    """With fewer parameters the step has the better evidence; it is the slip nevertheless."""
+    rng = np.random.default_rng(1)
+    experiment = random_experiment(rng, "hmc1995", 4)
+    moved = slip(0.55, np.array([0.6, 0.0, 0.8]))
+    moved.amplitude = 15.0
+    noise = rng.normal(0.0, STATED_NOISE, len(experiment.time))
+    text = run_text(experiment, probe(experiment, [moved], noise), False)
+    found = diagnose(read_back(text, MACHINES["hmc1995"]), only=["artefact-slip"])
+    assert [effect.name for effect in found.found] == ["artefact-slip"]
+    assert found.withdrawn == ()
+
+
+def test_no_law_is_a_product_of_two_temperatures(stylus) -> None:
+    """A drift that both follow was learnt as one, and predicted another run worse than none."""
+    space, field = Space.of(stylus[2].before), Ground.of(stylus[2].before.run).field
+    level = next(driver for driver in field.drivers if driver.nature == "level")
+    C = spread(field.bearers[0].C, level.values(space.touches)[:, None])
+    others = {driver for driver, _ in modulations(space, field, C, level)} - {level}
+    assert others
+    assert {driver.nature for driver in others} <= {"linear", "rotary", "sign"}
 
 
 def test_the_command_writes_an_effect_that_the_other_commands_take(
@@ -515,7 +554,7 @@ def test_a_saved_law_is_less_sure_beyond_the_values_it_was_learnt_from(stylus) -
     hidden = 20.0 * UM * columns([law], near.touches)[:, 0]
     start = Beginning.of_run(replace(near, deviation=near.deviation + hidden))
     after = start.fitted([law])
-    one = LearntLaw(law, (), 0.0, 0.0, 0.0, ())
+    one = LearntLaw(law, (), 0.0, 0.0, 0.0, 0.0, ())
     found = Learning(start, after, after, (one,), None, None, (), POLICY)
     (beyond,) = found.saved.model.effects[-1:]
     count = len(after.model.parameters)
@@ -546,7 +585,7 @@ def test_a_model_predicts_the_average_over_laws_that_its_run_does_not_distinguis
     hidden = 4.0 * UM * columns([law], run.touches)[:, 0]
     start = Beginning.of_run(replace(run, deviation=run.deviation + hidden))
     after = start.fitted([law])
-    one = LearntLaw(law, (), 0.0, 0.0, 0.0, (Rival(other, np.log(3.0)),))
+    one = LearntLaw(law, (), 0.0, 0.0, 0.0, 0.0, (Rival(other, np.log(3.0)),))
     found = Learning(start, after, after, (one,), None, None, (), POLICY)
     text = model_text(found.saved, "run", shares=found.shares)
     entries = {e["name"]: e for e in tomllib.loads(text)["effect"]}
@@ -598,7 +637,7 @@ def test_a_law_that_a_run_speaks_against_is_not_expected_there(stylus) -> None:
 
     start = Beginning.of_run(moved(run))
     after = start.fitted([law])
-    one = LearntLaw(law, (), 0.0, 0.0, 0.0, ())
+    one = LearntLaw(law, (), 0.0, 0.0, 0.0, 0.0, ())
     found = Learning(start, after, after, (one,), None, None, (), POLICY)
     text = model_text(found.saved, "monday.csv", shares=found.shares)
     assert "share =" not in text
@@ -629,7 +668,7 @@ def test_a_run_of_one_pose_leaves_carriers_that_other_poses_distinguish() -> Non
     np.testing.assert_allclose(np.abs(columns_[1:]), np.abs(columns_[:1]).repeat(4, 0), atol=1e-9)
     assert [c.name for c in apart_elsewhere(law.carrier, alike, touches)] == ["EZC"]
     assert apart_elsewhere(law.carrier, alike[:2], touches) == []
-    one = LearntLaw(law, tuple(alike), 9.0, 0.0, 0.0, (), elsewhere=(alike[2],))
+    one = LearntLaw(law, tuple(alike), 9.0, 0.0, 0.0, 0.0, (), elsewhere=(alike[2],))
     members = {law.name: share for law, share in one.members(POLICY)}
     assert members == {"law(EZY,lin Y)": 0.5, "law(EZC,lin Y)": 0.5}
 
