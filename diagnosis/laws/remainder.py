@@ -66,9 +66,11 @@ def learn_remainder(
 def _odds(alone: Learning, beside: Learning, found: Sequence[Effect]) -> float:
     """Log odds of laws alone against effects with what was learnt beside them, on the same rows.
 
-    Tables are curves, against which fewer parameters decide. An effect with a cause that explains
-    the run as well as a law with fewer parameters is that cause: a slip that turns nothing is a
-    step of a displacement. Laws must therefore explain more than such effects, nothing charged.
+    Tables are curves, against which fewer parameters decide, as they do between two effects of the
+    library: a law that it has under another name is charged as that. An effect with a cause that
+    explains the run as well as a law with fewer parameters is that cause: a slip that turns nothing
+    is a step of a displacement. Laws must therefore explain more than such effects, nothing
+    charged.
     """
     both = (alone, beside)
     gross = replace(alone.after.gross, rows=alone.after.gross.rows | beside.after.gross.rows)
@@ -76,11 +78,12 @@ def _odds(alone: Learning, beside: Learning, found: Sequence[Effect]) -> float:
     factor = np.maximum(*(one.after.prior.factor[:count] for one in both))
     fits = [_white(one, one.laws, factor, gross) for one in both]
     charges = [sum(law.charge for law in one.laws) for one in both]
+    better = [max(law.library.score - law.score, 0.0) if law.library else 0.0 for law in alone.laws]
     touches, freedom = alone.before.run.touches, max(fits[1].solution.dof, 1.0)
     before = beside.before
     named = sum(charge_of(e, touches, freedom, _determined(before, e)) for e in found)
-    odds = log_odds(fits[0], fits[1], charges[0] - charges[1] - named)
-    if any(traits(e).is_table for e in found):
+    odds = log_odds(fits[0], fits[1], charges[0] - sum(better) - charges[1] - named)
+    if any(traits(e).is_table for e in found) or all(better):
         return odds
     return min(odds, log_odds(fits[0], _white(beside, (), factor, gross), 0.0))
 
