@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+from matstd.diagnosis.policy import POLICY as DIAGNOSIS
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LawPolicy:
@@ -26,10 +28,10 @@ class LawPolicy:
     # predictions average over its members
     class_odds: float = 4.0
     # log odds of a law over a temperature, a level or a time since an event against every law that
-    # belongs to its run alone, below which it may stand for a driver that was not recorded: odds of
-    # 150 : 1. Where the driver had been deleted they were 0.2, -0.6 and 3.5, of true laws of
-    # temperatures 19 and more
-    open_driver: float = 5.0
+    # belongs to its run alone, below which it may stand for a driver that was not recorded, as in
+    # the choice of effects. Where the driver had been deleted they were 0.2, -0.6, 3.5 and 6.2, of
+    # true laws of temperatures 19 and more
+    open_driver: float = DIAGNOSIS.log_odds_open_driver
     most_laws: int = 3  # laws learnt one after the other
     most_factors: int = 2  # shapes of which a law is the product
     most_turns: int = 2  # how often each of several laws is searched anew with the others in place
