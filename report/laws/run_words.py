@@ -20,7 +20,7 @@ def run_sentence(one: LearntLaw) -> str:
     clocked = [f.shape for f in one.law.factors if f.driver == CLOCK]
     if not clocked:
         odds = odds_words(one.run_odds)
-        what = f"A driver that was not recorded explains this run as well (odds {odds}); the law"
+        what = f"It may stand for a driver that was not recorded (odds {odds} against that), and"
     elif any(s.relaxes for s in clocked) and not any(s.is_placed for s in clocked):
         what = "It had not come to rest when the run ended, may be a drift, and"
     elif any(shape.word in _SWITCHES for shape in clocked):

@@ -45,9 +45,11 @@ from matstd.diagnosis.laws import (
     places,
     second_run,
 )
+from matstd.diagnosis.laws.acceptance import holds_where_largest
 from matstd.diagnosis.laws.beginning import Beginning
 from matstd.diagnosis.laws.formulas import columns_of, scan, spread
 from matstd.diagnosis.laws.learn import _by_rival as weighed
+from matstd.diagnosis.laws.learn import _of_its_run
 from matstd.diagnosis.laws.library import LibraryEffect
 from matstd.diagnosis.laws.remainder import _determined
 from matstd.diagnosis.laws.screening import _quick_frequencies, by_evidence, modulations
@@ -216,7 +218,7 @@ def test_a_law_over_a_temperature_that_belongs_to_its_run_may_take_any_course_in
         ("law(EXX,exp time)", "had not come to rest"),
         ("law(EXX,step time,two-exp time)", "was not recorded and switches"),
         ("law(EXX,curve time)", "A driver that was not recorded belongs to this run"),
-        ("law(EXX,step T-spindle)", "explains this run as well (odds 20 : 1)"),
+        ("law(EXX,step T-spindle)", "a driver that was not recorded (odds 20 : 1 against that)"),
     ],
 )
 def test_why_a_law_belongs_to_its_run_is_said(name, said, stylus) -> None:
@@ -259,6 +261,38 @@ def test_a_formula_that_grows_into_a_corner_is_not_taken_for_a_wave_along_a_diag
     run, second = (read_back(text, MACHINES["fork"]) for text in texts[:2])
     found = second_run(learn_laws(run), second)
     assert found.learnt < 1.02 * found.without
+
+
+def test_a_formula_is_not_largest_at_a_gross_error(stylus) -> None:
+    """A bump at one touch alone explains whatever stands there."""
+    found = stylus[2]
+    touches = found.before.run.touches
+    x = touches.reading("X")
+    row = int(np.argmax(x))
+    law = parse_effect("law(EXX,exp X)", touches.chain).tuned(float(x[row]), -0.5)
+    apart = replace(found.before.gross, rows=np.arange(len(x)) == row)
+    assert np.abs(law.amounts(touches)[0])[row] == 1.0
+    for gross, is_kept in ((found.before.gross, True), (apart, False)):
+        fits = (found.beginning.fitted([], gross=gross), found.beginning.fitted([law], gross=gross))
+        assert holds_where_largest(*fits, law, POLICY) == is_kept
+
+
+@pytest.mark.parametrize(
+    ("name", "owner"),
+    [
+        ("law(EXX,bump T-spindle)", "run"),
+        ("law(EXX,lin T-spindle)", "machine"),  # a body that expands in proportion
+        ("law(EXX,bump T-room)", "machine"),
+    ],
+)
+def test_a_temperature_that_only_rises_is_a_clock_of_its_run(name, owner, stylus) -> None:
+    touches = stylus[1][0].touches
+    since = touches.since_start / touches.since_start[-1]
+    readings = {"spindle": 20.0 + since**2, "room": 20.0 + np.sin(12.0 * since)}
+    touches = replace(touches, temperature=readings)
+    law = parse_effect(name, touches.chain).tuned(*[20.5, 1.0][: 2 * ("bump" in name)])
+    one = LearntLaw(law, (), score=100.0, charge=0.0, curve=0.0, drift=0.0, rivals=())
+    assert _of_its_run(one, touches, POLICY).law.belongs_to == owner
 
 
 def test_a_law_is_charged_its_parameters_and_the_choice_among_many(stylus) -> None:
