@@ -44,6 +44,8 @@ DOMAIN_MARGIN = 0.1
 LOOPS = ("hysteresis", "play-quad")  # shapes with a memory, which a curve shows least
 FAST_WAVES = 1200  # frequencies up to which sines of a reading are scanned, per range and half
 
+PER_DRIVER = 3  # most carriers of one variable: others would crowd out a second variable
+
 
 Single = NDArray[np.float32]
 
@@ -267,9 +269,11 @@ def rough_grids(field: Field) -> list[Scanned]:
 
 
 def rough_shapes(space: Space, field: Field, grids: Sequence[Scanned], each: int) -> list[Rough]:
-    """The best quick sines, and the best loops.
+    """The best quick sines, and the best loops, of every variable a few.
 
-    What they explain is approximate: the model imitates little of a quick wave or of a loop.
+    What they explain is approximate: the model imitates little of a quick wave or of a loop. Where
+    a run drifts, loops of temperatures explain more so than a loop of Z with 291 to gain, and
+    filled the list.
     """
     C = np.concatenate([b.C[:, i : i + 1] for b in field.bearers for i in range(b.C.shape[1])], 1)
     C = C * space.used[:, None]
@@ -282,15 +286,16 @@ def rough_shapes(space: Space, field: Field, grids: Sequence[Scanned], each: int
     for driver, (shape,), (points,), columns in grids:
         along = sum((R @ column) ** 2 for column in columns)
         power = along / (share * (S @ (columns**2).mean(axis=0)) + MIN_OWN)
+        largest, place = power.max(axis=1), np.argmax(power, axis=1)
         found[shape.word in LOOPS] += [
             Rough(
                 bearer=owner[i],
                 driver=driver,
                 word=shape.word,
-                places=tuple(points[j].tolist()),
-                explained=float(power[i, j]),
+                places=tuple(points[place[i]].tolist()),
+                explained=float(largest[i]),
             )
-            for i, j in enumerate(np.argmax(power, axis=1))
+            for i in np.argsort(-largest, kind="stable")[:PER_DRIVER]
         ]
     return [r for kind in found.values() for r in sorted(kind, key=lambda r: -r.explained)[:each]]
 

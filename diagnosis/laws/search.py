@@ -20,6 +20,7 @@ from matstd.diagnosis.laws.formulas import (
 )
 from matstd.diagnosis.laws.policy import LawPolicy
 from matstd.diagnosis.laws.screening import (
+    PER_DRIVER,
     Field,
     Found,
     Grids,
@@ -62,14 +63,15 @@ UNUSUAL = ("power", "saturation", "dead-band", "pulse", "saw", "quad-about", "pl
 
 DRIFT = "time"  # variable of an unrecorded driver, of which only smoothness in time is assumed
 QUICK_PERIODS = 8.0  # periods within the range from which a sine is quick
-PER_DRIVER = 3  # most carriers of one variable among them: others would crowd out a second variable
 
-ROUGH, MODULATED = 12, 2
+ROUGH, MODULATED = 24, 2
 """Shapes of either kind that no curve shows, and those of which a second variable is looked for."""
 
 REFINED, FAR = 24, 20.0
-"""Candidates whose parameters are refined, and the log evidence by which one, or the curve of its
-carrier and variable, may be behind the best (or half of it). Where a law is clear, points of a grid
+"""Candidates whose parameters are refined beside the best of every other variable, and the log
+evidence by which one, or the curve of its carrier and variable, may be behind the best (or half of
+it). No curve shows a loop: on the grid one was behind three temperatures, and 123 before them
+between its points. Where a law is clear, points of a grid
 lose more: a plateau gained 206 on the grid and 582 between its points, its curve 316."""
 
 REFINING = 0.5
@@ -160,7 +162,9 @@ def _promising(
     scored: Sequence[tuple[float, Candidate]],
     curved: Mapping[tuple[str, tuple[Driver, ...]], float],
 ) -> list[tuple[float, Candidate]]:
-    """Candidates that refinement may make the best, with their scores, the best hope first.
+    """Candidates that refinement may make the best, with their scores.
+
+    The best hope comes first, and the best of every other set of variables after them.
 
     Between points of its grid the best formula of a carrier and a variable reaches about what the
     curve over them gains, and the others gain as much: a pulse over time lost 100 of 540 on the
@@ -176,10 +180,16 @@ def _promising(
         best[key] = max(best.get(key, score), score)
     lost = {key: max(curved.get(key, score) - score, 0.0) for key, score in best.items()}
     hoped = [(score + lost[_place(one)], score, one) for score, one in scored]
-    hoped = sorted(hoped, key=lambda h: -h[0])[:REFINED]
+    hoped = sorted(hoped, key=lambda h: -h[0])
+    near, others = hoped[:REFINED], sorted(hoped[REFINED:], key=lambda h: -h[1])
+    shown = {one.law.drivers for *_, one in near}
+    for other in others:
+        if other[2].law.drivers not in shown:
+            shown.add(other[2].law.drivers)
+            near.append(other)
     top = max((score for score, _ in scored), default=0.0)
     least = min(0.5 * top, top - FAR)
-    return [(score, one) for hope, score, one in hoped if hope > least]
+    return [(score, one) for hope, score, one in near if hope > least]
 
 
 def _place(one: Candidate) -> _Place:
