@@ -4,15 +4,13 @@ A section is a record without HTML; `page.html` renders all of them in one way. 
 marks: `code` between backquotes, **bold**, the index of u_{cal}, and [words](address).
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
-if TYPE_CHECKING:
-    from markupsafe import Markup
-    from matplotlib.figure import Figure
+from markupsafe import Markup
+
+from matstd.report.style import Figure
 
 T = TypeVar("T")
 
@@ -46,7 +44,7 @@ class Table:
         cells: Mapping[str, Callable[[T], str]],
         caption: str = "",
         is_best: Callable[[T], bool] = lambda _: False,
-    ) -> Table:
+    ) -> "Table":
         """A row for each item; every heading with the function that makes its cell."""
         every = list(items)
         rows = [[cell(item) for cell in cells.values()] for item in every]

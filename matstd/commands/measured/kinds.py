@@ -1,23 +1,39 @@
 """What `matstd import` makes of each kind of table: a run, its machine, and words on both."""
 
-from __future__ import annotations
-
+import argparse
 import re
-from typing import TYPE_CHECKING
+from collections.abc import Callable
+
+import numpy as np
 
 from matstd.console import say
+from matstd.importers import (
+    Sheet,
+    circle_machine,
+    circle_run,
+    import_arm,
+    import_points,
+    one_axis_machine,
+    positioning_run,
+    read_circle,
+    read_positioning,
+    read_sheet,
+)
+from matstd.importers.arms import oriented, read_arm
+from matstd.importers.instruments import (
+    CircleParameter,
+    PositioningTest,
+    circle_parameters,
+    component_range,
+    positioning_figures,
+)
+from matstd.importers.points import Meaning, read_points
+from matstd.report.numbers import with_uncertainty
 from matstd.twin.errors import DesignError
+from matstd.twin.files import read_machine
+from matstd.twin.machine import Chain
+from matstd.twin.record import Run
 from matstd.twin.units import DEG, UM, URAD
-
-if TYPE_CHECKING:
-    import argparse
-    from collections.abc import Callable
-
-    from matstd.importers import Sheet
-    from matstd.importers.instruments import CircleParameter, PositioningTest
-    from matstd.importers.points import Meaning
-    from matstd.twin.machine import Chain
-    from matstd.twin.record import Run
 
 
 def readings_of(args: argparse.Namespace) -> tuple[Callable[[Sheet], int] | None, str]:
@@ -25,10 +41,6 @@ def readings_of(args: argparse.Namespace) -> tuple[Callable[[Sheet], int] | None
 
     None with a mapping file, for which any table may be meant.
     """
-    from matstd.importers import read_circle, read_positioning
-    from matstd.importers.arms import read_arm
-    from matstd.importers.points import read_points
-
     if args.component or args.positioning:
         name = args.component or ""
         axis = name[-1:] or args.positioning
@@ -46,8 +58,6 @@ def readings_of(args: argparse.Namespace) -> tuple[Callable[[Sheet], int] | None
 
 def positioning(args: argparse.Namespace, sheet: Sheet) -> tuple[Run, Chain]:
     """A test of one axis as a run."""
-    from matstd.importers import one_axis_machine, positioning_run, read_positioning
-
     name = args.component or ""
     axis = name[-1:] if name else args.positioning
     if name and not re.fullmatch("E[XYZABC][XYZ]", name):
@@ -63,10 +73,6 @@ def positioning(args: argparse.Namespace, sheet: Sheet) -> tuple[Run, Chain]:
 
 def _say_positioning(test: PositioningTest) -> None:
     """Targets, directions, and the figures of the standard, which no model makes."""
-    import numpy as np
-
-    from matstd.importers.instruments import component_range, positioning_figures
-
     turns = test.axis in "ABC"
     low, high = (v / (DEG if turns else 1.0) for v in (test.target.min(), test.target.max()))
     up, down = (int((test.direction == s).sum()) for s in (1, -1))
@@ -96,9 +102,6 @@ def _say_positioning(test: PositioningTest) -> None:
 
 def circle(args: argparse.Namespace, sheet: Sheet) -> tuple[Run, Chain]:
     """A circular test as a run."""
-    from matstd.importers import circle_machine, circle_run, read_circle
-    from matstd.importers.instruments import circle_parameters
-
     plane = args.circle.upper()
     if plane not in ("XY", "YZ", "ZX", "YX", "ZY", "XZ"):
         raise DesignError(f"--circle {args.circle}: expected two axes such as XY, YZ or ZX")
@@ -125,8 +128,6 @@ def circle(args: argparse.Namespace, sheet: Sheet) -> tuple[Run, Chain]:
 
 def _circle_words(one: CircleParameter) -> str:
     """`squareness of X and Y -29.60 ± 0.29 µrad`."""
-    from matstd.report.numbers import with_uncertainty
-
     unit, name = {"squareness": (URAD, "µrad"), "scale": (1e-6, "ppm")}.get(
         one.name.partition(" ")[0], (UM, "µm")
     )
@@ -135,9 +136,6 @@ def _circle_words(one: CircleParameter) -> str:
 
 def arm(args: argparse.Namespace, sheet: Sheet) -> tuple[Run, Chain]:
     """An arm under a tracker as a run."""
-    from matstd.importers import import_arm, read_sheet
-    from matstd.importers.arms import oriented
-
     found = import_arm(
         sheet,
         _uncertainty(args, "u_um", UM),
@@ -173,8 +171,6 @@ def arm(args: argparse.Namespace, sheet: Sheet) -> tuple[Run, Chain]:
 
 def points(args: argparse.Namespace, sheets: list[Sheet]) -> tuple[Run, Chain]:
     """Lists of points as a run."""
-    from matstd.importers import import_points
-
     meaning: Meaning = "part" if args.part else "standard"
     then = "brought back to the nominal one" if args.part else "the standard stands so"
     u = _uncertainty(args, "u_um", UM)
@@ -196,8 +192,6 @@ def points(args: argparse.Namespace, sheets: list[Sheet]) -> tuple[Run, Chain]:
 
 def _machine(args: argparse.Namespace) -> Chain | None:
     """The machine of `--machine`, None where it is not given."""
-    from matstd.twin.files import read_machine
-
     return read_machine(args.machine) if args.machine else None
 
 
