@@ -19,6 +19,7 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
+from scipy.special import ndtri
 
 from matstd.artefact.body import (
     FreeformPatch,
@@ -262,8 +263,6 @@ def _form(left: Array, u_point: float) -> float:
 
     Reference: Blom, Statistical Estimates (1958): expected largest of n normal numbers.
     """
-    from scipy.special import ndtri
-
     n = len(left)
     noise = 2.0 * float(ndtri((n - 0.375) / (n + 0.25))) * np.sqrt(max(n - 4, 1) / n)
     return float(np.sqrt(max(float(np.ptp(left)) ** 2 - (noise * u_point) ** 2, 0.0)))

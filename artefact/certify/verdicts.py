@@ -13,6 +13,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.special import stdtrit
 
 from matstd.artefact.body import Standard, Verdict
 from matstd.artefact.certify.calibration_fit import CalibrationFit
@@ -144,8 +145,6 @@ def _scatter(J: Array, left: Array, floor: float) -> float:
     Few balls enlarge it by the ratio of Student's factors: with three balls 20 um out of place
     7 % of pieces with perfect faces are rejected without this factor, 3 % with it.
     """
-    from scipy.special import stdtrit
-
     degrees = len(left) - J.shape[1]
     few = float(stdtrit(degrees, _ONE_SIDED) / stdtrit(1e6, _ONE_SIDED))
     return few * max(floor, float(np.sqrt(left @ left / degrees)))

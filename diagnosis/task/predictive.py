@@ -37,6 +37,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.optimize import brentq
+from scipy.special import chdtri, ndtr, ndtri
 
 from matstd.diagnosis.task.visits import Visits
 from matstd.twin.frames import Array
@@ -59,9 +61,6 @@ class Expected:
 
     def half_width(self, level: float) -> float:
         """Half the interval that holds a share of the results, mm."""
-        from scipy.optimize import brentq
-        from scipy.special import ndtr, ndtri
-
         sd = np.sqrt(self.variance)
         if not sd.any():
             return 0.0
@@ -171,8 +170,6 @@ def _shares(parts: int) -> list[Array]:
 
 def _of_visits(frame: _Frame) -> tuple[Expected, _Covariance]:
     """What the next visit and the visits in b add, and the covariance of the mean of the visits."""
-    from scipy.special import chdtri
-
     n, J = len(frame.within), frame.places
     dof = (n - 1) * J
     parts = frame.of_visit

@@ -26,6 +26,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from scipy.optimize import brentq
 from scipy.special import stdtrit
 
 from matstd.diagnosis.task.predictive import expected_error
@@ -129,8 +130,6 @@ def _as_student(U: float, narrower: float, least: float) -> tuple[float, float]:
         narrower: Half that of `_GUARD`.
         least: Of the scale, where the intervals are those of no such distribution: U is kept.
     """
-    from scipy.special import stdtrit
-
     if U == 0.0:
         return 0.0, _MOST
 
@@ -145,8 +144,6 @@ def _as_student(U: float, narrower: float, least: float) -> tuple[float, float]:
 
 def _where(falling: Callable[[float], float], value: float) -> float:
     """Degrees of freedom at which something that falls with them has a value."""
-    from scipy.optimize import brentq
-
     if falling(_MOST) >= value:
         return _MOST
     if falling(_LEAST) <= value:

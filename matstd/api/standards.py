@@ -22,6 +22,7 @@ from matstd.artefact.certify import (
     with_verdicts,
 )
 from matstd.artefact.worth import Calibration as KnownPlaces
+from matstd.cad_out.details import CALIBRATED
 from matstd.diagnosis.files import SavedModel, check_machine, read_model, write_uncertainty
 from matstd.diagnosis.fit import Prior
 from matstd.diagnosis.task import TaskUncertainty, Visits
@@ -30,6 +31,7 @@ from matstd.report.machine import drawing_triangles, standard_bodies, thinned
 from matstd.report.pages import write_uncertainty_page
 from matstd.report.task import measured_sentence, refusal_sentence, task_lines
 from matstd.report.words import remark_sentence
+from matstd.stages import cmm
 from matstd.stages.budgets import UNCORRECTED, budgets
 from matstd.twin.display import Displayed
 from matstd.twin.errors import BadArgument, DesignError, NotConforming
@@ -138,8 +140,6 @@ def calibrate(
         >>> any(verdict.is_refused for verdict in found.verdicts)
         False
     """
-    from matstd.cad_out.details import CALIBRATED
-
     if not 0.0 <= waviness / UM <= 100.0:
         raise BadArgument("waviness_um", f"{waviness / UM:g}", "0 to 100 µm")
     for name, value in (("u_um", u), ("u_feature_um", u_feature)):
@@ -179,8 +179,6 @@ def cmm_program(standard: Standard | str | Path, orientation: float = 0.0) -> st
         >>> cmm_program("standard.toml").count("PTMEAS/") > 100
         True
     """
-    from matstd.stages import cmm
-
     return cmm.cmm_program(as_designed(standard), orientation)
 
 

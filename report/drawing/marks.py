@@ -7,7 +7,7 @@ import numpy as np
 
 from matstd.artefact.body import DatumSphere, FreeformPatch, MountingHole, Standard
 from matstd.cad_out.details import BALL_SIZE, Details, datum_touches, tolerances_of
-from matstd.report.drawing.sections import BALL_CUT, FACE_CUT, HOLE_CUT, section_of
+from matstd.report.drawing.sections import BALL_CUT, FACE_CUT, HOLE_CUT, LARGE, section_of
 from matstd.report.drawing.sheet import Sheet, View
 from matstd.twin.frames import Array
 
@@ -108,8 +108,6 @@ def draw_tolerances(sheet: Sheet, views: Views, standard: Standard, details: Det
 
 def large_face(standard: Standard) -> FreeformPatch | None:
     """The only face of a standard, if it is large enough for a section of its own."""
-    from matstd.report.drawing.sections import LARGE
-
     patch = standard.patches[0] if len(standard.patches) == 1 else None
     return patch if patch and min(patch.half_size) >= LARGE and patch.is_upright else None
 

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
+from scipy.fft import dct
 
 from matstd.compensation.field import MachineErrors
 from matstd.report.effects import effect_title
@@ -229,8 +230,6 @@ def _coefficients(
     degree: int,
 ) -> Array:
     """Interpolation at the Chebyshev points of the first kind, one dimension a reading."""
-    from scipy.fft import dct
-
     n = degree + 1
     points = np.cos(np.pi * (np.arange(n) + 0.5) / n)
     grid = grid_points(*[points] * len(readings))

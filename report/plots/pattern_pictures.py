@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.residual import (
@@ -153,8 +154,6 @@ def _map(x: Array, r: Array, weight: Array) -> Array:
         r: Residuals, (N,).
         weight: Weight of each, (N,).
     """
-    from scipy.spatial import cKDTree
-
     scaled = (x / np.ptp(x, axis=1)[:, None]).T
     near = cKDTree(scaled).query(scaled, k=min(NEIGHBOURS, len(r)))[1].reshape(len(r), -1)
     return np.asarray((weight[near] * r[near]).sum(axis=1) / weight[near].sum(axis=1))

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+from scipy.special import ndtri
 
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.residual import RankedVariable, binned, standardised
@@ -134,8 +135,6 @@ def _histogram(ax: Any, z: Array, factor: float) -> None:
 
 def _normal_plot(ax: Any, fit: Fit, z: Array) -> None:
     """Order statistics against those expected; gross errors at the edge of the scale."""
-    from scipy.special import ndtri
-
     rows = np.flatnonzero(fit.used | fit.gross.rows)
     rows = rows[np.argsort(z[rows])]
     expected = ndtri((np.arange(len(rows)) + 0.5) / len(rows))

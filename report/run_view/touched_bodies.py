@@ -5,6 +5,7 @@ another one as the surface between its points.
 """
 
 import numpy as np
+from scipy.spatial import Delaunay, QhullError
 
 from matstd.twin.frames import Array, outward
 from matstd.twin.record import Touches
@@ -67,8 +68,6 @@ def _sphere(centre: Array, radius: float) -> Array:
 
 def _surface(point: Array, normal: Array) -> Array:
     """Triangles between points seen along their mean normal; those along the rim are left out."""
-    from scipy.spatial import Delaunay, QhullError
-
     none = np.zeros((0, 3, 3))
     mean = normal.mean(axis=0)
     size = float(np.linalg.norm(mean))

@@ -11,6 +11,7 @@ from matstd.console import say
 from matstd.next_steps import next_line
 from matstd.options import Options
 from matstd.twin.units import NM, UM
+from matstd.twin.words import listed
 
 if TYPE_CHECKING:
     from matstd.api.compensating import Compensation
@@ -84,8 +85,6 @@ def _on_linuxcnc(args: argparse.Namespace, machine: Compensation, limits: Output
 
 
 def _corrected(service: Service) -> str:
-    from matstd.twin.words import listed
-
     correction, sensors = service.correction, service.sensors
     follows = f", following {listed(list(sensors))}" if sensors else ""
     return (

@@ -1,6 +1,7 @@
 """`matstd examples`: the examples that come with the tool, copied to a folder of the user's."""
 
 import argparse
+from fnmatch import fnmatch
 from importlib.resources import files
 from importlib.resources.abc import Traversable
 from pathlib import Path
@@ -98,8 +99,6 @@ def run(args: argparse.Namespace) -> int:
 
 def _found(pattern: str) -> list[tuple[str, Traversable]]:
     """Files of the examples that a pattern names, by their path within them."""
-    from fnmatch import fnmatch
-
     *inner, name = pattern.split("/")
     place: Traversable = files("matstd.examples").joinpath(*inner)
     names = sorted(file.name for file in place.iterdir() if fnmatch(file.name, name))

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from matstd.commands.measured.results import made_in_folder, say_files
 from matstd.console import say, say_each
 from matstd.options import Options, measured, pitches, starting_model
+from matstd.twin.words import deviations_in
 
 if TYPE_CHECKING:
     from matstd.api.diagnosing import Comparison
@@ -26,7 +27,6 @@ def run(args: argparse.Namespace) -> int:
     """Compare; the folder appears whole or not at all."""
     from matstd.api.diagnosing import Comparison, compare
     from matstd.progress import turns
-    from matstd.twin.words import deviations_in
 
     def make(show: Progress) -> Comparison:
         return compare(

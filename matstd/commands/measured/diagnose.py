@@ -11,7 +11,8 @@ from matstd.commands.measured.results import made_in_folder, say_files
 from matstd.console import console, say, say_each
 from matstd.next_steps import called
 from matstd.options import Options, measured, pitches, starting_model
-from matstd.twin.units import UM
+from matstd.twin.units import DEG, MINUTE, UM
+from matstd.twin.words import deviations_in, in_own_unit
 
 if TYPE_CHECKING:
     from matstd.api.diagnosing import Diagnosis
@@ -40,7 +41,6 @@ def run(args: argparse.Namespace) -> int:
     """Diagnose; the folder appears whole or not at all."""
     from matstd.api.diagnosing import Diagnosis, diagnose
     from matstd.progress import turns
-    from matstd.twin.words import deviations_in
 
     def make(show: Progress) -> Diagnosis:
         return diagnose(
@@ -112,7 +112,6 @@ def _last_state(found: Diagnosis) -> list[str]:
 
     from matstd.twin.model import traits
     from matstd.twin.thermal import OWN, SPINDLE
-    from matstd.twin.units import MINUTE
 
     touches, effects = found.run.touches, [s.effect for s in found.steps if s.effect is not None]
     known = [traits(effect) for effect in effects]
@@ -131,8 +130,6 @@ def _last_state(found: Diagnosis) -> list[str]:
 def _probed(found: Diagnosis) -> list[str]:
     """Readings of the touches by axis, mm and degrees, as `--within` has them: `X=-120:118`."""
     import numpy as np
-
-    from matstd.twin.units import DEG
 
     touches = found.run.touches
     units = np.where([touches.chain.link(a).kind == "rotary" for a in touches.chain.axes], DEG, 1.0)
@@ -170,7 +167,6 @@ def _report(args: argparse.Namespace, result: Diagnosis, arm: str) -> None:
     from matstd.report.laws import law_notes, visit_sentences
     from matstd.report.verdict import part_lines
     from matstd.report.words import remark_sentence, scanned_sentence, verdict_sentence
-    from matstd.twin.words import in_own_unit
 
     say(f"{result.verdict.value}: {verdict_sentence(result)}", style="bold")
     notes = law_notes(result.laws) if result.laws else []

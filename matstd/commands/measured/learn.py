@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from matstd.commands.measured.results import made_in_folder, say_files
 from matstd.console import say, say_each
 from matstd.options import Options, measured, pitches, starting_model
+from matstd.twin.words import deviations_in
 
 if TYPE_CHECKING:
     from matstd.api.learning import LearntLaws
@@ -26,7 +28,6 @@ OPTIONS: Options = {
 def run(args: argparse.Namespace) -> int:
     """Learn; the folder appears whole or not at all."""
     from matstd.api.learning import LearntLaws, learn
-    from matstd.twin.words import deviations_in
 
     def make(show: Progress) -> LearntLaws:
         show("law", 0, 1)
@@ -48,8 +49,6 @@ def run(args: argparse.Namespace) -> int:
 
 def _next(args: argparse.Namespace, found: LearntLaws) -> tuple[str, str]:
     """A law gets a name, once a visit has distinguished it from its rivals; without one measure."""
-    from pathlib import Path
-
     from matstd.next_steps import called
 
     out, again = Path(args.output), f"{args.output}-2"

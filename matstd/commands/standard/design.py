@@ -4,7 +4,7 @@ import argparse
 
 from matstd.console import say, say_each
 from matstd.options import PDF, SHEET, Options, output
-from matstd.progress import Plan
+from matstd.progress import Plan, stages
 from matstd.workers import SCHEDULER
 
 PLAN: Plan = {
@@ -44,7 +44,6 @@ def run(args: argparse.Namespace) -> int:
     """Design, with a bar for every stage; the folder appears whole or not at all."""
     from matstd.api.designing import Project
     from matstd.artefact.reach import standing_remarks
-    from matstd.progress import stages
     from matstd.report.task import fewer_lines, making_lines, task_lines
     from matstd.report.words import design_lines, proof_line
 
