@@ -214,10 +214,7 @@ class ProbeReach:
     def _cosine(self, wanted: Requests, poses: "_PoseKinematics") -> Array:
         """Cosine of the angle between normal and tool axis, (N,)."""
         axis = poses.T_table_tool[poses.index, :3, 2]
-        cosine: Array = np.einsum(
-            "ni,ni->n", axis, turn(self.setup.T_table_artefact, wanted.normal)
-        )
-        return cosine
+        return np.einsum("ni,ni->n", axis, turn(self.setup.T_table_artefact, wanted.normal))
 
     def _excess(self, q: Array) -> Array:
         """How far readings (N, A) are beyond the ends of their travels, (N, A), mm and rad."""

@@ -31,8 +31,7 @@ def cube(side: float, modulus: float, poisson: float) -> Array:
         B = _strains(point, side)
         whole += B.T @ D @ B * (0.5 * side) ** 3
     kept, inner, across = whole[:24, :24], whole[24:, 24:], whole[:24, 24:]
-    stiffness: Array = kept - across @ np.linalg.solve(inner, across.T)
-    return stiffness
+    return kept - across @ np.linalg.solve(inner, across.T)
 
 
 def _elasticity(modulus: float, poisson: float) -> Array:

@@ -217,8 +217,7 @@ def aspects(corners: Array, triangles: np.ndarray) -> Array:
     a, b, c = (corners[triangles[:, k]] for k in range(3))
     longest = np.max([((a - b) ** 2).sum(1), ((b - c) ** 2).sum(1), ((c - a) ** 2).sum(1)], axis=0)
     twice = np.linalg.norm(np.cross(b - a, c - a), axis=1)
-    ratio: Array = longest / np.maximum(twice, 1e-300)
-    return ratio
+    return longest / np.maximum(twice, 1e-300)
 
 
 def face_areas(corners: Array, triangles: np.ndarray, owner: np.ndarray) -> dict[str, float]:
@@ -259,8 +258,7 @@ def owners(standard: Standard, corners: Array, triangles: np.ndarray) -> np.ndar
 
 def _distance(surface: FreeformPatch | DatumSphere, points: Array) -> Array:
     if isinstance(surface, DatumSphere):
-        distance: Array = np.linalg.norm(points - surface.centre, axis=1) - surface.radius
-        return distance
+        return np.linalg.norm(points - surface.centre, axis=1) - surface.radius
     local = apply(surface.T_patch_artefact, points)
     j = surface.jet(local[:, :2])
     return (local[:, 2] - j.h) / np.sqrt(1.0 + j.hu**2 + j.hv**2)

@@ -269,8 +269,7 @@ def _sags(face: Face, corner: Array, xyz: Array) -> Array:
     normal /= np.maximum(np.linalg.norm(normal, axis=1), 1e-300)[:, None]
     between = np.einsum("pk,fki->fpi", _BETWEEN, corner)
     on = face.point(between.reshape(-1, 2)).reshape(len(corner), -1, 3)
-    sag: Array = np.abs(np.einsum("fpi,fi->fp", on - xyz[:, :1], normal)).max(axis=1)
-    return sag
+    return np.abs(np.einsum("fpi,fi->fp", on - xyz[:, :1], normal)).max(axis=1)
 
 
 def _collected(points: _Points, faces: Sequence[Face]) -> tuple[Array, np.ndarray, np.ndarray]:

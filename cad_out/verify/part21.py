@@ -30,8 +30,7 @@ class SplineFace:
         from scipy.interpolate import NdBSpline
 
         spline = NdBSpline(self.knots, self.poles, k=self.degree)
-        points: Array = spline(uv)
-        return points
+        return spline(uv)
 
 
 @dataclass(frozen=True, eq=False)

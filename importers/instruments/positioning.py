@@ -198,8 +198,7 @@ def _filled_forward(at: Array) -> Array:
     """Targets with missing ones replaced by the last one before them, or the first."""
     there = np.isfinite(at)
     last = np.maximum.accumulate(np.where(there, np.arange(len(at)), np.argmax(there)))
-    held: Array = at[last]
-    return held
+    return at[last]
 
 
 def _upright(sheet: Sheet) -> Sheet:

@@ -48,8 +48,7 @@ class View:
 
     def at(self, points: Any) -> Array:
         """Points (N, 2) of the view on paper, mm."""
-        placed: Array = np.array([self.x, self.y]) + self.scale * np.atleast_2d(points)
-        return placed
+        return np.array([self.x, self.y]) + self.scale * np.atleast_2d(points)
 
 
 @dataclass(frozen=True, slots=True)

@@ -236,8 +236,7 @@ def _free_places(standard: Standard, eye: Array) -> Array:
     holes = np.array([[hole.x, hole.y] for hole in standard.holes]).reshape(-1, 2)
     for hole in holes:
         room = np.minimum(room, np.linalg.norm(flat[:, :2] - hole, axis=1) - 12.0)
-    ranked: Array = flat[np.argsort(-(np.minimum(room, 15.0) + 0.1 * flat @ eye))]
-    return ranked
+    return flat[np.argsort(-(np.minimum(room, 15.0) + 0.1 * flat @ eye))]
 
 
 def _aim(plotter: Any, standard: Standard, eye: Array) -> float:

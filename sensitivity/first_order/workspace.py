@@ -63,8 +63,7 @@ class Workspace:
         if self.volume is None:
             return np.ones(len(q), dtype=bool)
         p, (low, high) = tip(self.chain, q, self.length), np.array(self.volume)
-        is_in: Mask = np.all((p >= low) & (p <= high), axis=1)
-        return is_in
+        return np.all((p >= low) & (p <= high), axis=1)
 
 
 def _inside(workspace: Workspace, q: Array) -> Array:

@@ -256,5 +256,4 @@ def drawn_scales(
         column.append(place[symbol])
     expected = np.array([population.ranges.sd(chain, symbol) for symbol in chain.symbols])
     size = np.abs(draw(population, count, rng).amplitude) / np.where(expected > 0.0, expected, 1.0)
-    scale: Array = np.maximum(size, SMALLEST_SCALE)[:, column]
-    return scale
+    return np.maximum(size, SMALLEST_SCALE)[:, column]

@@ -90,8 +90,7 @@ class Study(Tabular):
     @property
     def worst_pose(self) -> Array:
         """Readings of the pose with the largest root mean square, (A,)."""
-        worst: Array = self.q[np.argmax(self.rms)]
-        return worst
+        return self.q[np.argmax(self.rms)]
 
     @cached_property
     def closed(self) -> NormalLength:

@@ -30,8 +30,7 @@ def thinned(instants: Array, most: int) -> Array:
 def between(times: Array, on_each_side: int) -> Array:
     """Instants between ascending times, with so many times on either side at least."""
     middle = 0.5 * (times[1:] + times[:-1])
-    inside: Array = middle[on_each_side - 1 : len(middle) - on_each_side + 1]
-    return inside
+    return middle[on_each_side - 1 : len(middle) - on_each_side + 1]
 
 
 @dataclass(frozen=True)

@@ -41,8 +41,7 @@ class SensorRecord:
 
     def since(self, begin: datetime) -> Array:
         """Time of every reading, (M,), s since `begin`."""
-        times: Array = self.clock - _seconds(begin)
-        return times
+        return self.clock - _seconds(begin)
 
     def at_touches(self, touches: Touches, begin: datetime) -> Touches:
         """Touches with what the sensors read at their times since `begin`; raises BadFile.
