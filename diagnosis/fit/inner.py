@@ -6,7 +6,17 @@ from dataclasses import dataclass
 import numpy as np
 
 from matstd.twin.frames import Array
-from matstd.twin.model import Effect, Inner, Model, Parameter, Term, Tunable, columns, is_tunable
+from matstd.twin.model import (
+    Effect,
+    Inner,
+    Model,
+    Parameter,
+    Term,
+    Tunable,
+    columns,
+    is_tunable,
+    with_inner,
+)
 from matstd.twin.record import Touches
 
 DIFFERENCE_STEP = 0.02
@@ -57,9 +67,7 @@ class Tangent:
 
 def shifted(effect: Tunable, index: int, by: float) -> Tunable:
     """The effect with one inner parameter moved."""
-    values = list(effect.tuning.values())
-    values[index] += by
-    return effect.tuned(*values)
+    return with_inner(effect, index, list(effect.tuning.values())[index] + by)
 
 
 def spacing(inner: Inner, value: float) -> float:

@@ -13,6 +13,8 @@ from matstd.diagnosis.geometry.changes import state_of_standing as state_of_stan
 from matstd.diagnosis.geometry.changes import with_changes as with_changes
 from matstd.diagnosis.geometry.corrections import Correction as Correction
 from matstd.diagnosis.geometry.corrections import key_of as key_of
+from matstd.diagnosis.geometry.corrections import moved_point as moved_point
+from matstd.diagnosis.geometry.corrections import turned_direction as turned_direction
 from matstd.diagnosis.geometry.learnt import LearntGeometry as LearntGeometry
 from matstd.diagnosis.geometry.learnt import Rung as Rung
 from matstd.diagnosis.geometry.learnt import changed_runs as changed_runs

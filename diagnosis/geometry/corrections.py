@@ -8,7 +8,7 @@ import numpy as np
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.geometry.quantities import Quantity
 from matstd.diagnosis.geometry.rivals import Descriptions, FoundNumber
-from matstd.diagnosis.geometry.rows import Estimate, GeometryRow
+from matstd.diagnosis.geometry.rows import GeometryRow
 from matstd.diagnosis.policy import POLICY
 from matstd.twin.machine import LETTERS, Link
 
@@ -53,12 +53,12 @@ def corrections(
     for name in dict.fromkeys(r.axes[-1] for r in clear):
         link = fit.model.chain.link(name)
         own = {r.symbol: r.estimate for r in clear if r.axes[-1] == name}
-        for made, letters in ((_moved_point, LETTERS[:3]), (_turned_direction, LETTERS[3:])):
+        for made, letters in ((moved_point, LETTERS[:3]), (turned_direction, LETTERS[3:])):
             wrong = {s: e for s, e in own.items() if s[1] in letters}
             if wrong:
                 rivals = descriptions.rivals([(s, e.value) for s, e in wrong.items()])
-                correction = made(link, {letters.index(s[1]): e for s, e in wrong.items()})
-                out.append(replace(correction, rivals=rivals))
+                found = {letters.index(s[1]): (e.value, e.u) for s, e in wrong.items()}
+                out.append(replace(made(link, found), rivals=rivals))
     # only lines that are wrong beyond an ordinary error may have one common cause
     far = [r for r in clear if r.is_far or r.is_beyond_expected]
     together = descriptions.rivals([(r.symbol, r.estimate.value) for r in far])
@@ -70,19 +70,20 @@ def key_of(row: GeometryRow) -> str:
     return f"axis.{row.axes[-1]}.{'direction' if row.symbol[1] in 'ABC' else 'point'}"
 
 
-def _moved_point(link: Link, moved: Mapping[int, Estimate]) -> Correction:
+def moved_point(link: Link, moved: Mapping[int, tuple[float, float]]) -> Correction:
+    """A point of an axis by what is added to some coordinates, with its standard uncertainty."""
     point = tuple(float(v) for v in link.point)
     return Correction(
         key=f"axis.{link.name}.point",
         stated=point,
-        found=tuple(v + (moved[i].value if i in moved else 0.0) for i, v in enumerate(point)),
-        u=tuple(moved[i].u if i in moved else None for i in range(3)),
+        found=tuple(v + (moved[i][0] if i in moved else 0.0) for i, v in enumerate(point)),
+        u=tuple(moved[i][1] if i in moved else None for i in range(3)),
     )
 
 
-def _turned_direction(link: Link, turned: Mapping[int, Estimate]) -> Correction:
-    omega = np.array([turned[i].value if i in turned else 0.0 for i in range(3)])
-    u_omega = np.array([turned[i].u if i in turned else 0.0 for i in range(3)])
+def turned_direction(link: Link, turned: Mapping[int, tuple[float, float]]) -> Correction:
+    """A direction by small rotations and their uncertainties, as a file takes it: a unit vector."""
+    omega, u_omega = np.array([turned.get(i, (0.0, 0.0)) for i in range(3)]).T
     d = link.direction
     found = d + np.cross(omega, d)
     found = found / np.linalg.norm(found)

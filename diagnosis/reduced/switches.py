@@ -13,7 +13,7 @@ import numpy as np
 from matstd.diagnosis.fit import continuous_inner
 from matstd.diagnosis.reduced.base import Base
 from matstd.twin.frames import Array
-from matstd.twin.model import Effect, Inner, Tunable, is_tunable
+from matstd.twin.model import Effect, Inner, Tunable, is_tunable, with_inner
 
 NODES = 13  # values of an inner parameter at which columns are computed
 
@@ -122,7 +122,7 @@ def _moved(
     ratio = low > 0.0 and high > 4.0 * low
     for _ in range(MAX_HALVINGS):
         values = _values(low, high, value, ratio)
-        raw = [base.columns([_tuned(effect, index, v)]) * sd for v in values]
+        raw = [base.columns([with_inner(effect, index, float(v))]) * sd for v in values]
         if not all(np.isfinite(C).all() for C in raw):
             return None
         if _misfit(raw, values, ratio) < MAX_MISFIT:
@@ -144,12 +144,6 @@ def _values(low: float, high: float, value: float, is_ratio: bool) -> Array:
     out = space(low, high, NODES)
     out[np.argmin(np.abs(out - value))] = value
     return np.asarray(out)
-
-
-def _tuned(effect: Tunable, index: int, value: float) -> Effect:
-    values = list(effect.tuning.values())
-    values[index] = float(value)
-    return effect.tuned(*values)
 
 
 def _misfit(raw: Sequence[Array], values: Array, is_ratio: bool) -> float:

@@ -21,7 +21,7 @@ from matstd.diagnosis.evidence import (
 )
 from matstd.diagnosis.fit import continuous_inner, spacing
 from matstd.twin.frames import Array
-from matstd.twin.model import Effect, Tunable, is_tunable
+from matstd.twin.model import Effect, is_tunable, with_inner
 
 SCAN_POINTS = 9  # points of every scan, over one distance of the grid to either side
 
@@ -62,19 +62,13 @@ def _sweep(
             before, value = top, list(best.tuning.values())[index]
             half = spacing(inner, value) / 4.0**level
             for point in np.clip(np.linspace(value - half, value + half, SCAN_POINTS), low, high):
-                trial = _moved(best, index, float(point))
+                trial = with_inner(best, index, float(point))
                 found, size = addition(base, trial)
                 if found > top:
                     best, top, scale = trial, found, size
             if level >= MIN_SCANS and top - before < SETTLED_GAIN:
                 break
     return best, top, scale
-
-
-def _moved(effect: Tunable, index: int, value: float) -> Tunable:
-    values = list(effect.tuning.values())
-    values[index] = value
-    return effect.tuned(*values)
 
 
 def refined_set(

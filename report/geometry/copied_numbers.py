@@ -6,10 +6,17 @@ from dataclasses import dataclass
 import numpy as np
 
 from matstd.diagnosis.faults import DescriptionFault, Fault
-from matstd.diagnosis.geometry import Correction, FoundNumber, LearntGeometry, key_of
+from matstd.diagnosis.geometry import (
+    Correction,
+    FoundNumber,
+    LearntGeometry,
+    key_of,
+    moved_point,
+    turned_direction,
+)
 from matstd.report.geometry.geometry_words import correction_line
 from matstd.report.numbers import with_uncertainty
-from matstd.twin.machine import LETTERS, Chain
+from matstd.twin.machine import LETTERS
 from matstd.twin.record import Touches
 from matstd.twin.units import DEG
 
@@ -103,38 +110,18 @@ def _way(touches: Touches, numbers: Sequence[FoundNumber]) -> Way:
     size = with_uncertainty(number.change, number.u, "mm")
     if name[3:] == "t":
         return Way(name, f"the ball is {size} off the tool axis in {name[1]}")
-    axis, chain = name[3:], touches.chain
-    link = chain.link(axis)
+    axis = name[3:]
+    link = touches.chain.link(axis)
     if LETTERS.index(name[1]) == link.own_component:
         if link.kind == "rotary":
             size = with_uncertainty(number.change / DEG, number.u / DEG, "°")
         return Way(name, f"the zero of {axis} is wrong by {size}")
     if name[1] in "ABC":
-        # a small rotation turns the stated direction; a file takes it as a unit vector again
-        omega, u = (v * np.eye(3)[LETTERS.index(name[1]) - 3] for v in (number.change, number.u))
-        d = link.direction + np.cross(omega, link.direction)
-        spread = np.abs(np.cross(u, link.direction))
-        return _line(
-            Correction(
-                key=f"axis.{axis}.direction",
-                stated=tuple(float(v) for v in link.direction),
-                found=tuple(float(v) for v in d / np.linalg.norm(d)),
-                u=tuple(float(v) if v > 0.0 else None for v in spread),
-            )
-        )
-    return _line(_point(chain, axis, numbers))
+        turned = {LETTERS.index(name[1]) - 3: (number.change, number.u)}
+        return _line(turned_direction(link, turned))
+    moved = {LETTERS.index(n.name[1]): (n.change, n.u) for n in numbers}
+    return _line(moved_point(link, moved))
 
 
 def _line(correction: Correction) -> Way:
     return Way(correction.key, correction_line(correction))
-
-
-def _point(chain: Chain, axis: str, numbers: Sequence[FoundNumber]) -> Correction:
-    stated = tuple(float(v) for v in chain.link(axis).point)
-    moved = {LETTERS.index(n.name[1]): n for n in numbers}
-    return Correction(
-        key=f"axis.{axis}.point",
-        stated=stated,
-        found=tuple(v + (moved[i].change if i in moved else 0.0) for i, v in enumerate(stated)),
-        u=tuple(moved[i].u if i in moved else None for i in range(3)),
-    )

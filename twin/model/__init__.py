@@ -23,6 +23,7 @@ from matstd.twin.model.effect import inner_values as inner_values
 from matstd.twin.model.effect import is_saved as is_saved
 from matstd.twin.model.effect import is_tunable as is_tunable
 from matstd.twin.model.effect import own_title as own_title
+from matstd.twin.model.effect import with_inner as with_inner
 from matstd.twin.model.effect_traits import Traits as Traits
 from matstd.twin.model.effect_traits import Wave as Wave
 from matstd.twin.model.effect_traits import original_of as original_of

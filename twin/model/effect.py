@@ -174,6 +174,13 @@ def _is_tunable(cls: type) -> bool:
     return hasattr(cls, "tuned") and getattr(cls, "has_inner", lambda: True)()
 
 
+def with_inner(effect: Tunable, index: int, value: float) -> Tunable:
+    """The effect with one inner parameter at another value."""
+    values = list(effect.tuning.values())
+    values[index] = value
+    return effect.tuned(*values)
+
+
 def inner_values(effect: Effect, touches: Touches) -> list[tuple[Inner, float]]:
     """Inner parameters of an effect with their present values, base units; none for most."""
     if not is_tunable(effect):
