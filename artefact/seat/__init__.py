@@ -6,6 +6,7 @@ In: base, table and bodies in the frame of the table's face. Out: distances in m
 from matstd.artefact.seat.seating import CONTACT_DEPTH as CONTACT_DEPTH
 from matstd.artefact.seat.seating import base_corners as base_corners
 from matstd.artefact.seat.seating import common_part as common_part
+from matstd.artefact.seat.seating import manifold as manifold
 from matstd.artefact.seat.seating import middle_room as middle_room
 from matstd.artefact.seat.seating import off_table as off_table
 from matstd.artefact.seat.seating import over_edge as over_edge

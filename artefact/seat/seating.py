@@ -6,6 +6,7 @@ Outlines are looked at in the frame of the table's face, bodies as hulls of thei
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import takewhile
+from typing import Any
 
 import numpy as np
 
@@ -132,6 +133,17 @@ def _apart(first: Array, second: Array) -> float:
     return float(np.hypot(*(a + share[:, None] * along).T).min())
 
 
+def manifold(corners: Array, triangles: np.ndarray) -> Any:
+    """A mesh as a solid of manifold3d."""
+    import manifold3d
+
+    mesh = manifold3d.Mesh(
+        vert_properties=np.ascontiguousarray(corners, dtype=np.float32),
+        tri_verts=np.ascontiguousarray(triangles, dtype=np.uint32),
+    )
+    return manifold3d.Manifold(mesh)
+
+
 def common_part(
     corners: Array, triangles: np.ndarray, other: Array, other_triangles: np.ndarray | None = None
 ) -> Array:
@@ -144,17 +156,10 @@ def common_part(
     """
     import manifold3d
 
-    def solid(points: Array, faces: np.ndarray) -> manifold3d.Manifold:
-        mesh = manifold3d.Mesh(
-            vert_properties=np.ascontiguousarray(points, dtype=np.float32),
-            tri_verts=np.ascontiguousarray(faces, dtype=np.uint32),
-        )
-        return manifold3d.Manifold(mesh)
-
     second = (
         manifold3d.Manifold.hull_points(np.ascontiguousarray(other, dtype=np.float32))
         if other_triangles is None
-        else solid(other, other_triangles)
+        else manifold(other, other_triangles)
     )
-    both = solid(corners, triangles) ^ second
+    both = manifold(corners, triangles) ^ second
     return np.asarray(both.to_mesh().vert_properties, dtype=float)[:, :3].reshape(-1, 3)

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from matstd.artefact.body import DatumSphere, FreeformPatch, Standard
+from matstd.artefact.seat import manifold
 from matstd.twin.frames import Array, apply
 from matstd.twin.numbers import distinct_rows
 
@@ -137,12 +138,7 @@ def manifold_volume(corners: Array, triangles: np.ndarray) -> float:
     """Volume by manifold3d, mm^3; nan where it does not accept the mesh as a solid."""
     import manifold3d
 
-    solid = manifold3d.Manifold(
-        manifold3d.Mesh(
-            vert_properties=np.ascontiguousarray(corners, dtype=np.float32),
-            tri_verts=np.ascontiguousarray(triangles, dtype=np.uint32),
-        )
-    )
+    solid = manifold(corners, triangles)
     accepted = solid.status() == manifold3d.Error.NoError and not solid.is_empty()
     return float(solid.volume()) if accepted else float("nan")
 

@@ -262,12 +262,17 @@ def _reported_size(
     quantity: str, unit: str, value: float, slope: Array, covariance: Array
 ) -> Reported:
     """A size of an effect in files, with the uncertainty of a function with this slope."""
+    return _size(quantity, unit, value, float(np.sqrt(slope @ covariance @ slope)))
+
+
+def _size(quantity: str, unit: str, value: float, u: float) -> Reported:
+    """A size of an effect in files, from value and uncertainty in its base unit."""
     suffix, factor = file_unit(unit)
     return Reported(
         quantity=quantity,
         unit=suffix,
         value=value / factor,
-        u=float(np.sqrt(slope @ covariance @ slope)) / factor,
+        u=u / factor,
         factor=factor,
         role=Role.SIZE,
     )
@@ -303,16 +308,7 @@ def size(effect: Effect, theta: Array, covariance: Array, seen: Mask | None = No
     across = away @ C @ away
     length = np.sqrt(max(squared - float(np.trace(across)), 0.25 * squared))
     variance = direction @ C @ direction + float((across**2).sum()) / (2.0 * squared)
-    u = float(np.sqrt(max(variance, 0.0)))
-    suffix, factor = file_unit(first)
-    return Reported(
-        quantity="amplitude",
-        unit=suffix,
-        value=float(length) / factor,
-        u=u / factor,
-        factor=factor,
-        role=Role.SIZE,
-    )
+    return _size("amplitude", first, float(length), float(np.sqrt(max(variance, 0.0))))
 
 
 def _inner(

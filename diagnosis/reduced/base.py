@@ -29,14 +29,10 @@ class Base:
     @classmethod
     def of(cls, fit: Fit, switched: frozenset[str]) -> "Base":
         """The base of a fit; `switched` are the names of effects that are no part of it."""
-        whole = fit.noise.factor * fit.weight
-        kept = np.concatenate(
-            [np.full(len(e.parameters), e.name not in switched) for e in fit.effects]
-        ).astype(bool)
-        setups = {e.name for e in fit.setups}
-        is_setup = np.concatenate(
-            [np.full(len(e.parameters), e.name in setups) for e in fit.effects]
-        ).astype(bool)
+        whole, setups = fit.noise.factor * fit.weight, {e.name for e in fit.setups}
+        names = [e.name for e, _ in fit.parameters]
+        kept = np.array([name not in switched for name in names], dtype=bool)
+        is_setup = np.array([name in setups for name in names], dtype=bool)
         return cls(fit, fit.X[:, kept] * whole, fit.y * whole, is_setup[kept])
 
     @cached_property

@@ -41,16 +41,17 @@ def _places(drawn: Figure, axes: Axes, reach: PlacesInReach, other: int, title: 
     shown = axes.scatter(x, y, c=share, cmap=_COLOURS, vmin=0.0, vmax=100.0, s=22)
     never = share == 0.0
     axes.scatter(x[never], y[never], marker="x", color=RED, s=26, label="never reached")
-    axes.set(
-        xlabel="x of the standard in mm",
-        ylabel=f"{'xyz'[other]} of the standard in mm",
-        aspect="equal",
-    )
-    axes.set_title(f"the blank {title}", loc="left")
-    plain(axes)
+    _blank_axes(axes, other, title)
     if never.any():
         axes.legend(loc="upper right", fontsize=8)
     drawn.colorbar(shown, ax=axes, label="table poses that reach it in %")
+
+
+def _blank_axes(axes: Axes, other: int, title: str) -> None:
+    across = f"{'xyz'[other]} of the standard in mm"
+    axes.set(xlabel="x of the standard in mm", ylabel=across, aspect="equal")
+    axes.set_title(f"the blank {title}", loc="left")
+    plain(axes)
 
 
 def _poses(drawn: Figure, axes: Axes, reach: PlacesInReach, chain: Chain) -> None:
@@ -118,11 +119,5 @@ def draw_room(room: Room) -> Figure:
             turned = ball.radius * np.stack([np.cos(round_it), np.sin(round_it)])
             axes.fill(x + turned[0], y + turned[1], color=RED, alpha=0.7, lw=0.0)
         axes.plot([-a, a, a, -a, -a], [low, low, high, high, low], color=INK, lw=1.0)
-        axes.set(
-            xlabel="x of the standard in mm",
-            ylabel=f"{'xyz'[other]} of the standard in mm",
-            aspect="equal",
-        )
-        axes.set_title(f"the blank {title}", loc="left")
-        plain(axes)
+        _blank_axes(axes, other, title)
     return drawn
