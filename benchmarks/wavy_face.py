@@ -20,12 +20,7 @@ from pathlib import Path
 
 import numpy as np
 
-from matstd.artefact.body import (
-    FreeformPatch,
-    Standard,
-    max_slope,
-    min_concave_radius,
-)
+from matstd.artefact.body import FreeformPatch, Standard, max_slope, min_concave_radius
 from matstd.artefact.brief import Brief, read_project
 from matstd.artefact.hidden import (
     HiddenPower,

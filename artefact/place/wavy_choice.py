@@ -28,13 +28,7 @@ from matstd.artefact.place.wavy_proof import (
     showing_table_poses,
 )
 from matstd.artefact.reach import Requests, spread_poses
-from matstd.artefact.worth import (
-    BallPlaces,
-    Criterion,
-    ball_places,
-    each_at,
-    face_grid,
-)
+from matstd.artefact.worth import BallPlaces, Criterion, ball_places, each_at, face_grid
 from matstd.twin.errors import NotBuildable, NotReachable
 from matstd.twin.frames import Array
 from matstd.twin.numbers import rms

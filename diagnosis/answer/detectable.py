@@ -5,13 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from matstd.diagnosis.evidence import (
-    EffectSet,
-    ScaledEffect,
-    Signatures,
-    needed_lengths,
-    projected,
-)
+from matstd.diagnosis.evidence import EffectSet, ScaledEffect, Signatures, needed_lengths, projected
 from matstd.diagnosis.fit import inner_unit
 from matstd.diagnosis.search import Search
 from matstd.twin.frames import Array

@@ -9,12 +9,7 @@ from matstd.diagnosis.answer.alike import period_value
 from matstd.diagnosis.answer.ambiguity import ConfusionClass
 from matstd.diagnosis.evidence import ScaledEffect
 from matstd.diagnosis.fit import Fit
-from matstd.diagnosis.next_visit import (
-    candidate_targets,
-    candidate_touches,
-    greedy,
-    separation,
-)
+from matstd.diagnosis.next_visit import candidate_targets, candidate_touches, greedy, separation
 from matstd.diagnosis.regression import GrossErrors
 from matstd.diagnosis.search import DiagnosisTask
 from matstd.twin.model import columns

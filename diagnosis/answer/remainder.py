@@ -13,12 +13,7 @@ from matstd.diagnosis.accuracy import Repeatability
 from matstd.diagnosis.answer.candidates import Candidate
 from matstd.diagnosis.answer.steps import named_probability
 from matstd.diagnosis.answer.verdict import Dependence, Offer
-from matstd.diagnosis.evidence import (
-    EffectSet,
-    Progress,
-    ScaledEffect,
-    quiet,
-)
+from matstd.diagnosis.evidence import EffectSet, Progress, ScaledEffect, quiet
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.regression import GrossErrors

@@ -46,18 +46,8 @@ from matstd.diagnosis.answer.remainder import (
     to_repeat,
 )
 from matstd.diagnosis.answer.reported_set import ReportedSet
-from matstd.diagnosis.answer.steps import (
-    Step,
-    check_distinct,
-    not_significant,
-    significant_effects,
-)
-from matstd.diagnosis.answer.trend import (
-    changing_since,
-    possible_changes,
-    shown_changes,
-    trend,
-)
+from matstd.diagnosis.answer.steps import Step, check_distinct, not_significant, significant_effects
+from matstd.diagnosis.answer.trend import changing_since, possible_changes, shown_changes, trend
 from matstd.diagnosis.answer.verdict import Diagnosis, Verdict, verdict_of
 from matstd.diagnosis.choice import (
     Choice,

@@ -8,11 +8,7 @@ import numpy as np
 from matstd.diagnosis.answer.ambiguity import ConfusionClass
 from matstd.diagnosis.answer.reported_set import ReportedSet, reported_set, without
 from matstd.diagnosis.answer.sizes import sizes
-from matstd.diagnosis.evidence import (
-    MIN_OWN_SHARE,
-    ResidualSpace,
-    ScaledEffect,
-)
+from matstd.diagnosis.evidence import MIN_OWN_SHARE, ResidualSpace, ScaledEffect
 from matstd.diagnosis.fit import Fit, Reported, Role, explained_rms
 from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.regression import GrossErrors, f_probability

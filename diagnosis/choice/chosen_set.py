@@ -8,13 +8,7 @@ from scipy.special import stdtr
 
 from matstd.diagnosis.choice.noise_memory import max_noise
 from matstd.diagnosis.choice.prediction import Choice
-from matstd.diagnosis.evidence import (
-    EffectSet,
-    Progress,
-    ScaledEffect,
-    projected,
-    quiet,
-)
+from matstd.diagnosis.evidence import EffectSet, Progress, ScaledEffect, projected, quiet
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.regression import Memory
 from matstd.diagnosis.remarks import Noticed, Remark, What, noticed

@@ -11,11 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.ndimage import median_filter
 
-from matstd.diagnosis.evidence.effect_signatures import (
-    Grid,
-    ResidualSpace,
-    tuned_variants,
-)
+from matstd.diagnosis.evidence.effect_signatures import Grid, ResidualSpace, tuned_variants
 from matstd.twin.frames import Array
 from matstd.twin.model import Effect, Inner, Tunable, columns, is_tunable
 

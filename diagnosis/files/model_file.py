@@ -19,13 +19,7 @@ from matstd.diagnosis.regression import Memory
 from matstd.diagnosis.remarks import EffectOfOtherRun
 from matstd.twin.display import Displayed
 from matstd.twin.errors import BadFile
-from matstd.twin.files import (
-    MachineTables,
-    Table,
-    checked,
-    parse_kind,
-    read_text,
-)
+from matstd.twin.files import MachineTables, Table, checked, parse_kind, read_text
 from matstd.twin.frames import Array
 from matstd.twin.library import owner_of
 from matstd.twin.machine import Chain

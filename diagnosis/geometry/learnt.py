@@ -28,11 +28,7 @@ from matstd.diagnosis.geometry.functionals import functionals
 from matstd.diagnosis.geometry.model_choice import with_model_choice
 from matstd.diagnosis.geometry.quantities import Functional, Quantity, geometric_effects
 from matstd.diagnosis.geometry.rivals import FoundNumber
-from matstd.diagnosis.geometry.rows import (
-    Estimate,
-    GeometryRow,
-    is_clear,
-)
+from matstd.diagnosis.geometry.rows import Estimate, GeometryRow, is_clear
 from matstd.diagnosis.policy import POLICY
 from matstd.twin.frames import Array
 from matstd.twin.model import Model, traits

@@ -14,14 +14,7 @@ from functools import cached_property
 
 import numpy as np
 
-from matstd.diagnosis.evidence import (
-    EffectSet,
-    Grid,
-    ScaledEffect,
-    ranked,
-    score_all,
-    signatures,
-)
+from matstd.diagnosis.evidence import EffectSet, Grid, ScaledEffect, ranked, score_all, signatures
 from matstd.twin.frames import Array
 from matstd.twin.library import proposals
 from matstd.twin.model import Effect, Parameter, Term, original_of, traits

@@ -12,13 +12,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from matstd.diagnosis.evidence import (
-    EffectSet,
-    ResidualSpace,
-    ScaledEffect,
-    addition,
-    projected,
-)
+from matstd.diagnosis.evidence import EffectSet, ResidualSpace, ScaledEffect, addition, projected
 from matstd.diagnosis.fit import continuous_inner, spacing
 from matstd.twin.frames import Array
 from matstd.twin.model import Effect, is_tunable, with_inner

@@ -47,10 +47,7 @@ from matstd.diagnosis.evidence import (
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.residual import PatternTests, Shape, Structure, find_structure
-from matstd.diagnosis.search.edges import (
-    unexplained_near_slip,
-    without,
-)
+from matstd.diagnosis.search.edges import unexplained_near_slip, without
 from matstd.diagnosis.search.further_parts import WiderSearch, further_periods, one_period, tables
 from matstd.diagnosis.search.members import EffectSubset, Member, by_blocks
 from matstd.diagnosis.search.missing_driver import is_unrecorded, unrecorded

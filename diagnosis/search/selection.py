@@ -35,11 +35,7 @@ from matstd.diagnosis.search.members import (
     set_of,
     single,
 )
-from matstd.diagnosis.search.missing_driver import (
-    follows_driver,
-    is_own_sensor,
-    is_unrecorded,
-)
+from matstd.diagnosis.search.missing_driver import follows_driver, is_own_sensor, is_unrecorded
 from matstd.diagnosis.search.refine import refined_set
 from matstd.diagnosis.search.screening import Budget
 from matstd.twin.frames import Array, Mask
