@@ -244,11 +244,7 @@ def _with_potential_share(
 
 
 def _drawn_error_scales(
-    reach: ProbeReach,
-    model: Model,
-    population: Population,
-    draws: int,
-    rng: np.random.Generator,
+    reach: ProbeReach, model: Model, population: Population, draws: int, rng: np.random.Generator
 ) -> Array:
     """Sizes of the errors of drawn machines over the expected ones, (S, P); the set-up stays free.
 

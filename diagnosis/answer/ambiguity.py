@@ -126,10 +126,7 @@ def _axis(effect: Effect) -> str:
 
 
 def confusion_class(
-    pool: Signatures,
-    found: ScaledEffect,
-    base: EffectSet,
-    others: Collection[str],
+    pool: Signatures, found: ScaledEffect, base: EffectSet, others: Collection[str]
 ) -> ConfusionClass:
     """Everything that explains what a found effect explains, with the other effects in place.
 

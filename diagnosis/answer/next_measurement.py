@@ -33,12 +33,7 @@ class Plan:
     periods_of: str = ""  # the effect whose periods are distinguished; empty for two effects
 
 
-def plan(
-    first: Fit,
-    rivals: Sequence[Fit],
-    names: tuple[str, str],
-    offers: Touches,
-) -> Plan | None:
+def plan(first: Fit, rivals: Sequence[Fit], names: tuple[str, str], offers: Touches) -> Plan | None:
     """The touches that would separate explanations of a run best.
 
     Greedy: the next touch is the one at which the two fitted models differ most, measured against

@@ -86,10 +86,7 @@ def significant_effects(
 
 
 def _steps(
-    task: DiagnosisTask,
-    added: tuple[ScaledEffect, ...],
-    tested: ReportedSet,
-    gross: GrossErrors,
+    task: DiagnosisTask, added: tuple[ScaledEffect, ...], tested: ReportedSet, gross: GrossErrors
 ) -> tuple[Step, ...]:
     """The error falling: the starting model, named effects, found effects by their worth."""
     state, first = tested.state, task.fit((), gross)

@@ -78,10 +78,7 @@ class _Trial:
 
 
 def description_faults(
-    before: Fit,
-    progress: Progress = quiet,
-    beside: Sequence[Effect] = (),
-    after: Fit | None = None,
+    before: Fit, progress: Progress = quiet, beside: Sequence[Effect] = (), after: Fit | None = None
 ) -> tuple[DescriptionFault, ...]:
     """Mistakes in the description of a run or its machine that make it fit; usually none.
 

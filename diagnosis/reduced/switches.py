@@ -130,10 +130,7 @@ def _moved(
         low, high = (
             (np.sqrt(low * value), np.sqrt(high * value))
             if ratio
-            else (
-                0.5 * (low + value),
-                0.5 * (high + value),
-            )
+            else (0.5 * (low + value), 0.5 * (high + value))
         )
     return None
 

@@ -189,10 +189,7 @@ def _gain(space: ResidualSpace, drop: Array) -> Array:
 
 
 def _wrong(
-    fit: Fit,
-    space: ResidualSpace,
-    known: Sequence[Bounded],
-    drawn: Array | None,
+    fit: Fit, space: ResidualSpace, known: Sequence[Bounded], drawn: Array | None
 ) -> Iterator[Region]:
     """Regions in which an error is off by a constant, each looked for beside those before it."""
     whole = ResidualSpace.of(fit)

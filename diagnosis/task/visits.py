@@ -102,11 +102,7 @@ def visits_of(
 
 
 def _placed(
-    run: Run,
-    is_task: Mask,
-    is_datum: Mask,
-    model: Model | None,
-    estimates: Prior | None,
+    run: Run, is_task: Mask, is_datum: Mask, model: Model | None, estimates: Prior | None
 ) -> tuple[Array, Mask]:
     """Deviations seen from the datum features, (N,), mm, and which of them are gross errors."""
     if not is_datum.any():

@@ -125,11 +125,7 @@ class Companions:
 
 
 def companions(
-    plan: TouchPlan,
-    dialect: Dialect,
-    feeds: Feeds,
-    raised: float,
-    is_further: bool,
+    plan: TouchPlan, dialect: Dialect, feeds: Feeds, raised: float, is_further: bool
 ) -> Companions:
     """Dry run, search within the widest of `SPREADS` that allows one, ball, commissioning program.
 
