@@ -7,7 +7,6 @@ come from, steps with their date, or a drift with its rate.
 
 from matstd.diagnosis.charts.chart import ControlChart as ControlChart
 from matstd.diagnosis.charts.chart import LimitSource as LimitSource
-from matstd.diagnosis.charts.chart import Segment as Segment
 from matstd.diagnosis.charts.course import ALPHA as ALPHA
 from matstd.diagnosis.charts.course import Drift as Drift
 from matstd.diagnosis.charts.course import Step as Step

@@ -11,7 +11,6 @@ with a function that fits it, and a line in `judged.offered`.
 from matstd.diagnosis.drift.drift_file import read_law as read_law
 from matstd.diagnosis.drift.drift_file import write_drift as write_drift
 from matstd.diagnosis.drift.drift_file import write_prediction as write_prediction
-from matstd.diagnosis.drift.drift_law import DriftLaw as DriftLaw
 from matstd.diagnosis.drift.drift_law import drift_law_of as drift_law_of
 from matstd.diagnosis.drift.judged import Judged as Judged
 from matstd.diagnosis.drift.judged import chosen as chosen

@@ -9,7 +9,5 @@ from matstd.diagnosis.reduced.board import Board as Board
 from matstd.diagnosis.reduced.board import compared_board as compared_board
 from matstd.diagnosis.reduced.board import diagnosed_board as diagnosed_board
 from matstd.diagnosis.reduced.board import learnt_board as learnt_board
-from matstd.diagnosis.reduced.matrices import Errors as Errors
 from matstd.diagnosis.reduced.matrices import Matrices as Matrices
-from matstd.diagnosis.reduced.matrices import Reduced as Reduced
 from matstd.diagnosis.reduced.switches import Switch as Switch

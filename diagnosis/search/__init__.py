@@ -8,7 +8,6 @@ asks for, `screening` what makes long runs affordable, `edges` gross errors that
 
 from matstd.diagnosis.search.further_parts import tables_along as tables_along
 from matstd.diagnosis.search.members import EffectSubset as EffectSubset
-from matstd.diagnosis.search.members import Member as Member
 from matstd.diagnosis.search.members import Verified as Verified
 from matstd.diagnosis.search.members import explained as explained
 from matstd.diagnosis.search.missing_driver import follows_driver as follows_driver
@@ -21,7 +20,6 @@ from matstd.diagnosis.search.screening import WHOLE_BELOW as WHOLE_BELOW
 from matstd.diagnosis.search.screening import Budget as Budget
 from matstd.diagnosis.search.screening import Library as Library
 from matstd.diagnosis.search.search_loop import SearchState as SearchState
-from matstd.diagnosis.search.search_loop import best_set as best_set
 from matstd.diagnosis.search.search_loop import clearly_best as clearly_best
 from matstd.diagnosis.search.search_loop import most_evident as most_evident
 from matstd.diagnosis.search.search_loop import refined_named as refined_named
