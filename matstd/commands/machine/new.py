@@ -41,7 +41,7 @@ NEEDS_MACHINE = ("project", "run")  # kinds that name a machine file
 
 
 OPTIONS: Options = {
-    f"kind={'|'.join(TEMPLATES)}": "kind of file",
+    f"kind=|{'|'.join(TEMPLATES)}": "kind of file",
     f"--like={'|'.join(['', *MACHINES])} NAME": "for a machine: the kind that is most like yours: "
     + ", ".join(MACHINES),
     "--machine MACHINE.toml": "for a project: propose blank, probe, faces, place and workspace "
