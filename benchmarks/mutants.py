@@ -317,8 +317,9 @@ class Copy:
         )
         if done.returncode in (0, 5):
             return ""
-        if done.returncode == 4 and "::" in tests[0]:  # the name was cut at a dash in it
-            return self.first_failure([tests[0].partition("::")[0]])
+        files = list(dict.fromkeys(test.partition("::")[0] for test in tests))
+        if done.returncode == 4 and files != tests:  # a name was cut, or the line makes the names
+            return self.first_failure(files)
         named = re.findall(r"^(?:FAILED|ERROR) (.+?)(?: - |$)", done.stdout, flags=re.MULTILINE)
         return named[0] if named else tests[0]
 

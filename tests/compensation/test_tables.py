@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from bench import LENGTH, oracle_tip
+from bench import LENGTH, oracle_tip, truth
 
 from matstd.cli import main
 from matstd.compensation.field import (
@@ -28,7 +28,7 @@ from matstd.compensation.tables import (
     write_tables,
 )
 from matstd.compensation.tables.along_axes import along_axes
-from matstd.compensation.tables.by_name import line
+from matstd.compensation.tables.by_name import interpolated, line
 from matstd.diagnosis.geometry import Estimate
 from matstd.report.compensation import grown_sentence, table_lines
 from matstd.twin.errors import BadFile
@@ -161,6 +161,28 @@ def test_tables_by_name_leave_their_interpolation(results):
     worst = np.linalg.norm(found.result.after, axis=1).max()
     assert rms(found.result.before) > 30 * UM
     assert 0.0 < worst <= found.interpolation < 2 * UM
+
+
+def test_between_and_beyond_its_points_a_table_reads_as_numpy_interpolates():
+    nodes, at = np.array([-40.0, -10.0, 5.0, 60.0]), np.linspace(-70.0, 90.0, 33)
+    values = np.array([[3.0, -1.0], [0.5, 4.0], [-2.0, 4.0], [1.0, 0.0]])
+    expected = np.column_stack([np.interp(at, nodes, v) for v in values.T])
+    np.testing.assert_allclose(interpolated(at, nodes, values), expected, atol=1e-12)
+
+
+def test_every_parameter_adds_its_own_error(known, datum):
+    """Errors by their formulas, of sixteen parameters at some readings."""
+    chain = known.chain  # C, B, X, Y, Z and the spindle
+    q = np.array([[1.1, -0.4, 120.0, -80.0, -250.0, 0.0], [-2.0, 0.3, -200.0, 40.0, -90.0, 0.0]])
+    by_axis = {axis: q[:, chain.axis_index(axis)] for axis in chain.axes}
+    links = range(len(chain.links))
+    added = known.amounts(known.touches(q, LENGTH), "twist", links) @ np.concatenate(known.theta)
+    expected = np.zeros_like(added)
+    for name, error in truth(by_axis).items():
+        if "0" not in name:
+            where = chain.twist_of(chain.symbol(name))
+            expected[:, where.link, where.component] = error
+    np.testing.assert_allclose(added, expected, atol=1e-9 * UM)
 
 
 def test_unaligned_too(known, written, bench_chain, poses, results):

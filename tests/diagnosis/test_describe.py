@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from matstd.diagnosis.fit.describe import size
-from matstd.twin.model import Parameter
+from matstd.diagnosis.fit.describe import _bound, size
+from matstd.twin.model import Inner, Parameter
 
 DRAWS = 1000
 BINOMIAL = 4.0
@@ -42,3 +42,16 @@ def test_noise_across_does_not_lengthen(name) -> None:
     assert abs(np.mean(z)) < 0.15  # the plain length is off by 0.04, -0.03, 0.75 and 1.26
     held = np.mean(np.abs(z) < 1.96)
     assert held > 0.93 - BINOMIAL * np.sqrt(0.95 * 0.05 / DRAWS)
+
+
+@pytest.mark.parametrize(
+    ("value", "end"),
+    [(10.0, -1), (10.009, -1), (10.011, 0), (109.89, 0), (109.91, 1), (110.0, 1)],
+)
+def test_a_value_within_a_thousandth_of_an_end_of_its_scan_lies_at_it(value, end) -> None:
+    """Of 10 at the low end, and of the 100 between the ends at the high one."""
+    grid = np.geomspace(10.0, 110.0, 5)
+    assert _bound(Inner("tau", "s", grid), value) == end
+    assert _bound(Inner("tau", "s", grid[::-1]), value) == end
+    for jumps in (Inner("k", "1", grid, False), Inner("t", "s", grid, acts="at an instant")):
+        assert _bound(jumps, value) == 0

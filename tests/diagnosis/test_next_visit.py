@@ -15,12 +15,24 @@ from matstd.api.saved import write_learnt
 from matstd.diagnosis.files import visit_text
 from matstd.diagnosis.laws import POLICY, learn_laws
 from matstd.diagnosis.laws.beginning import Beginning
-from matstd.diagnosis.next_visit import NoPlan, Schedule, greedy, plan_visit, separation
+from matstd.diagnosis.next_visit import (
+    NoPlan,
+    Schedule,
+    greedy,
+    plan_visit,
+    planned_visit,
+    separation,
+)
 from matstd.diagnosis.next_visit.course import TIME_CONSTANTS, Course
 from matstd.diagnosis.next_visit.discrimination import log_odds_drawn
 from matstd.diagnosis.next_visit.hypotheses import Hypothesis, hypotheses, unseen
 from matstd.diagnosis.next_visit.offers import visiting_touches
-from matstd.diagnosis.next_visit.planned_visit import LEAST_SEPARATION, SIZES
+from matstd.diagnosis.next_visit.planned_visit import (
+    LEAST_SEPARATION,
+    SIZES,
+    RivalPower,
+    VisitPlan,
+)
 from matstd.diagnosis.next_visit.planned_visit import _planned as planned
 from matstd.report.laws import visit_sentences
 from matstd.twin.library import parse_effect
@@ -179,6 +191,31 @@ def test_a_longer_visit_is_planned_where_a_short_one_decides_nothing(warm) -> No
         counts.append(len(plan.touches) if plan.touches is not None else np.inf)
     assert counts[0] <= SIZES[0]
     assert counts[1] > SIZES[0]
+
+
+@pytest.mark.parametrize(
+    ("visits", "taken"),
+    [
+        # (power, rivals that are not distinguished) of 128, 256 and 512 touches
+        ([(0.85, 0)], 0),
+        ([(0.5, 0), (0.7, 0), (0.9, 0)], 2),
+        ([(0.5, 1), (0.85, 1), (0.9, 1)], 1),  # the open one stays open: 256 decide the others
+        ([(0.85, 2), (0.85, 1), (0.9, 1)], 1),
+        ([(0.6, 1), (0.4, 1), (0.6, 1)], 0),  # as often decided as by the longest
+        ([(0.9, 1), (0.9, 1), (None, 2)], 2),
+    ],
+)
+def test_the_shortest_visit_is_planned_that_decides_as_much_as_any(
+    warm, visits, taken, monkeypatch
+) -> None:
+    law = parse_effect("law(bias,sine X)", warm[0].touches.chain).tuned(60.0)
+    open_ = RivalPower(law, 0.0, 0.9 * LEAST_SEPARATION, 0.0, 0.0, None, False)
+    plans = [VisitPlan(law, power=power, rivals=(open_,) * n) for power, n in visits]
+    left = iter(plans)
+    monkeypatch.setattr(planned_visit, "_of_size", lambda *_: next(left))
+    found = explanations(warm[0], "law(bias,sine X)", "law(EZX,sine X)", places=(60.0,))
+    assert planned(found, warm[0], np.random.default_rng(0)) is plans[taken]
+    assert next(left, None) is None
 
 
 def test_poses_between_those_of_the_run_are_offered_from_known_sides() -> None:

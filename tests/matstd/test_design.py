@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 import rs274
 from browser import faults, opened, requests
+from commands import steps_of_work
 from figures import render_alone
 from unchanged import Unchanged, facts, folded, page_text
 
@@ -74,7 +75,7 @@ def with_few_sites(**fields: object) -> Brief:
 
 @pytest.fixture(scope="module")
 def figures() -> dict[str, str]:
-    """What the figures of the design consist of."""
+    """What the figures of the design consist of, and what its progress says."""
     return {}
 
 
@@ -95,13 +96,13 @@ def made(tmp_path_factory: pytest.TempPathFactory, figures: dict[str, str]) -> P
         patch.setattr(comparison, "rivals", lambda *of: dict([*bodies(*of).items()][:1]))
         patch.setattr("matstd.cad_out.verify.export.mesh_chord", lambda _: 0.05)
         # `report/test_*` render them; the drawing is no PNG
-        recorded = render_alone(patch)
+        recorded, steps = render_alone(patch), steps_of_work(patch)
         patch.setattr(study_run, "draw_maps", lambda *_: [])
         patch.setattr(design_page, "draw_study_volumes", lambda *_: [])
         patch.setattr(design_page, "touch_curve", partial(touch_curve, counts=(50, 150)))
         project = small_project(folder, touches=100, poses=8)
         assert main(["design", str(project), "-o", str(out)]) == 0
-    figures |= recorded
+    figures |= recorded | {"steps of the work": "\n".join(steps)}
     return out
 
 

@@ -5,6 +5,7 @@ import shutil
 
 import bench
 import pytest
+from commands import steps_of_work
 from scenes import scenes_alone
 from workshop import EXAMPLES
 from written import folder_text
@@ -125,12 +126,12 @@ def there(files, monkeypatch):
 def test_what_a_command_prints_and_writes(
     words, there, rendered_alone, monkeypatch, capsys, unchanged
 ) -> None:
-    figures, scenes = rendered_alone(), scenes_alone(monkeypatch)
+    figures, scenes, steps = rendered_alone(), scenes_alone(monkeypatch), steps_of_work(monkeypatch)
     folder, before = there
     for one in words.split("; "):
         assert main(one.split()) == 0
     printed = re.sub(r"(?m)\s+$", "", capsys.readouterr().out)
-    text = "\n".join([printed, folder_text(folder, figures, before), *scenes, ""])
+    text = "\n".join([printed, folder_text(folder, figures, before), *scenes, *steps, ""])
     unchanged(UNSTABLE.sub("", text))
 
 

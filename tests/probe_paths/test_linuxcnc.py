@@ -13,6 +13,7 @@ import pytest
 from programs import all_read, ran, stand_in
 
 from matstd.artefact.tool import Probe
+from matstd.nc.linuxcnc import variables
 from matstd.probe_paths.campaign import VirtualMachine
 from matstd.probe_paths.control import ProbeStep
 from matstd.probe_paths.emit import make_programs
@@ -68,6 +69,17 @@ def test_preset_and_tool_make_words_of_readings(chain, plan):
     assert files["tool.tbl"] == "T30 P30 Z163.000000 D6.000000\n"
     numbers = [int(line.split()[0]) for line in files["machine.var"].splitlines()]
     assert numbers == sorted(set(numbers))  # LinuxCNC refuses another order
+
+
+def test_offsets_stand_at_the_numbers_of_the_manual():
+    """LinuxCNC, G-code overview: 5221 to 5230 are G54 in X to W and its rotation, 5381 ff. G59.3;
+    5220 is the system in force, 5161 and 5181 begin G28 and G30, 5210 to 5219 are G92."""
+    lines = variables({1: (1, 2, 3), 9: (7, 8, 9)}).splitlines()
+    found = [(int(number), float(value)) for number, value in map(str.split, lines)]
+    blocks = [(5161, 9), (5181, 9), (5210, 10), (5220, 1), *((5221 + 20 * k, 10) for k in range(9))]
+    assert [number for number, _ in found] == [a + k for a, n in blocks for k in range(n)]
+    stated = {5220: 1.0, 5221: 1.0, 5222: 2.0, 5223: 3.0, 5381: 7.0, 5382: 8.0, 5383: 9.0}
+    assert {number: value for number, value in found if value} == stated
 
 
 def test_every_axis_has_its_joint_and_its_travel(chain):

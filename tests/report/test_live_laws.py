@@ -8,11 +8,12 @@ import pytest
 from browser import faults, opened, page_data, requests, run
 
 from matstd.api.diagnosing import Diagnosis as SavedDiagnosis
+from matstd.api.learning import LearntLaws
 from matstd.diagnosis.answer import compare, diagnose
 from matstd.diagnosis.fit import Prior, fit_run
-from matstd.diagnosis.laws import amplitudes, learn_remainder
+from matstd.diagnosis.laws import Refusal, amplitudes, learn_remainder
 from matstd.diagnosis.reduced import compared_board, learnt_board
-from matstd.report.laws import law_curve
+from matstd.report.laws import law_curve, law_sentence, no_law_sentence
 from matstd.report.layout import Page, write_page
 from matstd.report.run_view import comparison_view, diagnosis_view, learnt_view
 from matstd.twin.model import Model
@@ -36,6 +37,15 @@ def test_the_board_switches_the_law(learning):
     off = board.errors(())
     assert off.fitted > 1.2 * on.fitted
     assert board.known[frozenset()] == (learning.before.rms, learning.before.test_rms)
+
+
+def test_without_a_law_a_notebook_says_why(learning):
+    own = {field.name: getattr(learning, field.name) for field in fields(learning)}
+    none = LearntLaws(**own | {"laws": (), "refusal": Refusal.CHANCE})
+    pages = none.live().page, LearntLaws(**own).live().page
+    why, what = no_law_sentence(none)[:50], law_sentence(learning, learning.laws[0])[:30]
+    assert [why in page for page in pages] == [True, False]
+    assert [what in page for page in pages] == [False, True]
 
 
 def test_effects_found_before_are_switches_beside_the_law(learning):

@@ -162,6 +162,9 @@ def test_bodies_of_an_arm_are_drums_and_tubes(tmp_path):
     bodies, letters = chain_bodies(read_machine(path), LENGTH)
     assert [k.text for k in letters] == ["A3", "C2", "A2", "A", "C"]
     assert {"A", "A2", "f"} <= {body.on for body in bodies}
+    # the wrist is drawn at the point of its line next to the tool, each joint next to the one after
+    drums = {k.text: k.place for k in letters}
+    assert [drums[name][2] for name in ("A3", "A2", "A")] == pytest.approx([200.0, 600.0, 900.0])
 
 
 def write_block(path, size=40.0, detail=0):
