@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 from simulator import probe, run_text
-from simulator_case import Ordinary, read_back, visible_size
+from simulator_case import TRIAL, Ordinary, read_back, visible_size
 from simulator_effects import SMALL, Hidden, unit_of
 from simulator_experiment import MACHINES, STATED_NOISE, random_experiment
 
@@ -23,6 +23,10 @@ LATER = 900.0, 4000.0
 
 MOST_DRAWS = 20
 """Places that are drawn for a law until an amplitude that machines have makes it visible."""
+
+LARGEST_DEVIATION = 1.0
+"""Largest deviation by a law, mm. Of a power of X over 1 m of which geometry takes up all but 30 um
+touches were 3.9 mm off, which no probing cycle measures and no model of first order describes."""
 
 
 class Family(NamedTuple):
@@ -215,9 +219,10 @@ def drawn(rng, experiment, family, signal_to_noise, ordinary, label):
     for _ in range(MOST_DRAWS):
         law = law_of(rng, experiment.machine, family)
         effect = Hidden(f"?{family}", "unknown", law.act)
-        per_unit, _ = visible_size(experiment, effect, ordinary, STATED_NOISE)
+        per_unit, signature = visible_size(experiment, effect, ordinary, STATED_NOISE)
         effect.amplitude = rng.uniform(*signal_to_noise) / max(per_unit, 1e-9)
-        if effect.amplitude < effect.largest:
+        deviation = effect.amplitude / TRIAL * np.abs(signature).max()
+        if effect.amplitude < effect.largest and deviation < LARGEST_DEVIATION:
             break
     else:
         raise ValueError(f"{family} is never visible on {label}")
