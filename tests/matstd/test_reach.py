@@ -9,7 +9,7 @@ import pytest
 from unchanged import Unchanged, facts, folded
 
 from matstd.artefact.brief import Brief, read_project
-from matstd.artefact.feasibility import check_room, check_seat, feasibility, side_by_side
+from matstd.artefact.feasibility import check_room, check_seat, feasibility, feasible
 from matstd.artefact.feasibility.room import room_for
 from matstd.artefact.feasibility.within_travels import _to_rise, travels
 from matstd.artefact.reach import ANGLE, Requests, places_on, reach_of, standing_remarks, table_face
@@ -203,7 +203,7 @@ def test_travels_and_refusals_are_what_they_were(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, unchanged: Unchanged
 ) -> None:
     """Of machines of three kinds, and of what stands in the wrong place or needs more travel."""
-    monkeypatch.setattr(side_by_side, "room_for", with_few_sites)
+    monkeypatch.setattr(feasible, "room_for", with_few_sites)
     lines = [
         facts(travels(read_project(MACHINES / f"{name}.toml")), name)
         for name in ("gantry", "upright", "vertical")
@@ -228,7 +228,7 @@ def test_patches_that_do_not_fit_are_reported_with_a_picture(
     tmp_path: Path, refusal, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("matstd.stages.design.design_standard", None)  # not begun
-    monkeypatch.setattr(side_by_side, "room_for", with_few_sites)
+    monkeypatch.setattr(feasible, "room_for", with_few_sites)
     wide = {r"\Z": "gap_mm = 120.0\n"}  # behind the table [limits]
     path, out = changed(tmp_path, "vertical", wide, {}), tmp_path / "out"
     (message,) = re.findall(r"(?m)^matstd .*", refusal(["design", str(path), "-o", str(out)]))
@@ -250,19 +250,19 @@ def test_patches_that_do_not_fit_are_reported_with_a_picture(
 )
 def test_what_would_do_does(tmp_path, monkeypatch, name, limits, expected, wish) -> None:
     """A tenth of the usual places are tried: what is refused is, and the wish that is met."""
-    monkeypatch.setattr(side_by_side, "_fewer_patches", lambda *_: ())
+    monkeypatch.setattr(feasible, "_fewer_patches", lambda *_: ())
     path = changed(tmp_path, name, {r"\Z": f"{limits}\n"}, {})
     project = read_project(path)
     project = replace(project, options=replace(project.options, sites=40))
     poses = np.linspace(-3.0, 3.0, 12)[:, None] * np.ones(len(project.chain.rotary_axes))
-    room = side_by_side.room_of(project, poses)
+    room = feasible.room_of(project, poses)
     with pytest.raises(NotBuildable, match=expected):
         check_room(room)
-    (words,) = [w for w in side_by_side.nearest_that_fits(project, room, poses) if wish in w]
+    (words,) = [w for w in feasible.nearest_that_fits(project, room, poses) if wish in w]
     key, unit = {"max_mass_kg": ("max_mass", 1.0), "max_slope_deg": ("max_slope", DEG)}[wish]
     met = replace(project.blank.limits, **{key: float(words.split(" = ")[1]) * unit})
     other = replace(project, blank=replace(project.blank, limits=met))
-    check_room(side_by_side.room_of(other, poses))
+    check_room(feasible.room_of(other, poses))
 
 
 def test_a_pose_is_charged_with_the_way_beyond_it(tmp_path: Path) -> None:
