@@ -119,10 +119,10 @@ def poses():
 
 
 def test_a_run_can_be_given_as_a_path_a_run_or_several(there) -> None:
-    run = matstd.read_run("run.csv")
-    by_path, by_run = matstd.compare("run.csv"), matstd.compare(run)
+    run = matstd.read_run("monday.csv")
+    by_path, by_run = matstd.compare("monday.csv"), matstd.compare(run)
     np.testing.assert_array_equal(by_path.residual, by_run.residual)
-    later = matstd.compare(["run.csv", "probed.csv"])
+    later = matstd.compare(["monday.csv", "probed.csv"])
     assert len(later.run) == len(run) + 33
 
 

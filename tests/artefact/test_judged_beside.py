@@ -25,7 +25,7 @@ def rivals_of(criterion: Criterion) -> tuple[Rival, ...]:
 def test_the_same_artefacts_in_the_same_order_to_the_last_bit(
     criterion: Criterion, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(comparison, "_SCATTER_SIZE", 120)
+    monkeypatch.setattr(comparison, "_SCATTER_SIZE", 40)
     alone = rivals_of(criterion)
     monkeypatch.setattr(beside, "CORES", 2)
     shared = rivals_of(criterion)

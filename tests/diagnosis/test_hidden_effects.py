@@ -138,7 +138,7 @@ def test_inner_parameters_are_found_with_their_uncertainty(case, diagnosed) -> N
     assert abs(tau.value - hidden["inner"]["tau_min"]) < WITHIN * tau.u
     assert tau.u < 0.5 * tau.value
     key = (*SINGLE["probe-lobing"], ("probe-lobing",))
-    run = case(*key).run
+    run = case(*key).run[::3]
     few = [parse_effect(n, run.touches.chain) for n in ("probe-lobing", "backlash(X)")]
     (step,) = diagnose(run, candidates=few).steps[1:]
     lobes = next(r for r in step.reported if r.name == "lobes")

@@ -157,7 +157,7 @@ def test_a_slow_change_is_seen_though_no_step_of_it_would_be() -> None:
     assert changed_runs(fit_run(same, changing(model, same.touches, range(1, 5)))) == ()
 
 
-@pytest.mark.parametrize("seed", [4, 6])
+@pytest.mark.parametrize("seed", [4, pytest.param(6, marks=pytest.mark.slow)])
 def test_one_change_alone_is_seen_where_a_hundred_at_once_would_hide_it(seed) -> None:
     """Four times finer than a geometry of which anything may change; nothing where nothing did."""
     found = []
@@ -195,6 +195,7 @@ def test_a_changed_machine_is_no_missing_effect(knocked, spring) -> None:
     assert found.geometry.ladder[1].rung is Rung.MODEL
 
 
+@pytest.mark.slow
 def test_the_same_machine_keeps_what_was_known(spring) -> None:
     again = made(3, [{}, {}])["b"]
     found = diagnose(again, *spring, candidates=few(again))

@@ -37,6 +37,13 @@ def test_a_report_of_characteristics_is_its_points(tmp_path):
     assert np.isnan(points.deviation[:, 2]).all()
 
 
+@pytest.mark.parametrize("lost", ["actual", "nominal"])
+def test_a_report_without_one_of_its_two_values_is_refused(tmp_path, lost):
+    (tmp_path / "chr.txt").write_text(CHARACTERISTICS.replace(lost, "remark"))
+    with pytest.raises(BadFile, match="columns such as 'nominal' and 'measured'"):
+        read_points(read_sheet(tmp_path / "chr.txt"))
+
+
 def test_directions_are_taken_and_what_is_not_is_named(imported, capsys):
     run, said = imported({"holes.csv": DIRECTIONS}, capsys)
     of_hole = dict(zip(run.touches.feature, run.touches.last_move("Y"), strict=True))

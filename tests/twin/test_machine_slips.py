@@ -1,5 +1,6 @@
 """Slips of units and digits in machine files are refused with what was meant; machines are not."""
 
+import math
 import re
 from ast import literal_eval
 from pathlib import Path
@@ -188,3 +189,14 @@ def test_a_pivot_of_the_other_sign_is_asked_about(tmp_path, name, point):
     line = stated(str(refusal.value))
     path.write_text(f"{line}\n" + path.read_text(encoding="utf-8"), encoding="utf-8")
     read_machine(path)
+
+
+@pytest.mark.parametrize(("angle", "spans"), [(0.0134, False), (0.0149, True)])
+def test_linear_axes_within_a_degree_of_one_another_span_nothing(tmp_path, angle, spans):
+    """Of two unit vectors the smallest singular value is sqrt(1 - cos a): 0.0095, and 0.0105.
+
+    With three axes that span, the table of this machine is beyond the travel along Z.
+    """
+    direction = f"[axis.Z]\ndirection = [{math.cos(angle):.12f}, 0.0, {math.sin(angle):.12f}]"
+    with pytest.raises(BadFile, match="beyond the travel along Z" if spans else "in one plane"):
+        read_machine(changed(tmp_path, ("[axis.Z]", direction)))
