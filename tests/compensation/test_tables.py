@@ -170,8 +170,8 @@ def test_between_and_beyond_its_points_a_table_reads_as_numpy_interpolates():
     np.testing.assert_allclose(interpolated(at, nodes, values), expected, atol=1e-12)
 
 
-def test_every_parameter_adds_its_own_error(known, datum):
-    """Errors by their formulas, of sixteen parameters at some readings."""
+def test_every_parameter_adds_its_own_error(known):
+    """Errors by their formulas; the two of a wave, beside another effect, as of the whole."""
     chain = known.chain  # C, B, X, Y, Z and the spindle
     q = np.array([[1.1, -0.4, 120.0, -80.0, -250.0, 0.0], [-2.0, 0.3, -200.0, 40.0, -90.0, 0.0]])
     by_axis = {axis: q[:, chain.axis_index(axis)] for axis in chain.axes}
@@ -183,6 +183,14 @@ def test_every_parameter_adds_its_own_error(known, datum):
             where = chain.twist_of(chain.symbol(name))
             expected[:, where.link, where.component] = error
     np.testing.assert_allclose(added, expected, atol=1e-9 * UM)
+    wave = parse_effect("periodic(EXX)", chain), np.array([3.0, -4.0]) * UM  # sine and cosine
+    two = MachineErrors.of_errors(
+        chain, [wave, (parse_effect("backlash(X)", chain), np.array([2.0 * UM]))]
+    )
+    touches = two.touches(q, LENGTH)
+    added = two.amounts(touches, "twist", links) @ np.concatenate(two.theta)
+    assert np.abs(added[:, chain.link_index("X"), 0]).min() > UM
+    np.testing.assert_allclose(added, two.contribution(touches).twist, atol=1e-9 * UM)
 
 
 def test_unaligned_too(known, written, bench_chain, poses, results):

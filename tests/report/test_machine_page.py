@@ -165,6 +165,9 @@ def test_bodies_of_an_arm_are_drums_and_tubes(tmp_path):
     # the wrist is drawn at the point of its line next to the tool, each joint next to the one after
     drums = {k.text: k.place for k in letters}
     assert [drums[name][2] for name in ("A3", "A2", "A")] == pytest.approx([200.0, 600.0, 900.0])
+    # of a line along the arm it is the place to which the arm has come, with its letter above
+    assert 200.0 < drums["C2"][2] < 300.0
+    assert 900.0 < drums["C"][2] < 1100.0
 
 
 def write_block(path, size=40.0, detail=0):
