@@ -203,15 +203,12 @@ RESULTS = {
     "diagnosis.json": [
         "diagnosis/files/diagnosis_file.py",
         "diagnosis/files/geometry_table.py",
-        "diagnosis/files/fault_table.py",
         "diagnosis/files/parts_table.py",
-        "diagnosis/files/trend_table.py",
         "diagnosis/files/law_file.py",
     ],
     "comparison.json": [
         "diagnosis/files/diagnosis_file.py",
         "diagnosis/files/geometry_table.py",
-        "diagnosis/files/fault_table.py",
         "diagnosis/files/parts_table.py",
     ],
     "law.json": [
