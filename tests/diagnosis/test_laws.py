@@ -108,6 +108,7 @@ def test_a_law_of_the_clock_of_one_run_is_not_expected_in_another(stylus) -> Non
     assert compare(repeating, applied).rms < 1.1 * true
 
 
+@pytest.mark.slow
 def test_a_law_that_begins_with_the_set_up_predicts_a_second_run() -> None:
     texts = law_case(np.random.default_rng(6), "hmc1995", "relaxing", (30.0, 31.0), poses=5)
     run, second, free = (read_back(text, MACHINES["hmc1995"]) for text in texts[:3])
@@ -255,6 +256,7 @@ def test_laws_are_learnt_in_the_place_of_imitators_alone(slipped) -> None:
     assert 1.0 < named <= len(searched.found[0].parameters)
 
 
+@pytest.mark.slow
 def test_a_formula_that_grows_into_a_corner_is_not_taken_for_a_wave_along_a_diagonal() -> None:
     """It predicted a second run, which went farther into it, with 1.63 um instead of 1.04."""
     texts = law_case(np.random.default_rng([71102, 14]), "fork", "diagonal")
@@ -378,6 +380,7 @@ def test_rivals_of_other_kinds_are_weighed_by_the_same_evidence(stylus) -> None:
     assert 'matstd diagnose --add "backlash(X)"' in no_law_sentence(none)
 
 
+@pytest.mark.slow
 def test_a_law_that_few_touches_show_is_no_row_of_gross_errors(stylus) -> None:
     """Six touches beyond an edge stand out like chips; six chips of the same size have no law."""
     run = stylus[1][2]

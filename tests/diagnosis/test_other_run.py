@@ -112,6 +112,7 @@ def test_a_file_of_before_is_read_by_the_kind_of_its_effects(visits, tmp_path):
         assert [one.effect.name for one in saved.left_out] == [] if is_there else ["artefact-slip"]
 
 
+@pytest.mark.slow
 def test_a_second_run_learns_without_the_slip_of_the_first(visits, tmp_path, capsys):
     words = [
         "diagnose",

@@ -331,6 +331,7 @@ def test_a_post_on_the_cradle_is_met_by_the_corners_that_turn_past_it() -> None:
     assert refusal(carried) == ""
 
 
+@pytest.mark.slow
 def test_a_post_on_the_cradle_clear_of_what_turns_within_the_workspace() -> None:
     """With C between -5 and 5 degrees no corner comes to the post in front of the side."""
     made = cradle_post(150.0, sides_mm=[20.0, 20.0])
