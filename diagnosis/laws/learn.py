@@ -180,9 +180,9 @@ def _of_its_run(one: LearntLaw, seen: Touches, policy: LawPolicy) -> LearntLaw:
     """The law, with what belongs to its run marked among its rivals and itself, and its class.
 
     A law over a temperature or a level may stand for a driver that was not recorded, which another
-    run meets at another temperature. So may any that only rose or fell: it is a clock of the run. A
-    bump over such a temperature had odds of e^13 against laws of the time, and predicted another
-    run with 2.31 µm instead of 1.34 without a law.
+    run meets at another temperature. A level that only rose or fell is a clock of the run: a bump
+    over such a temperature had odds of e^13 against laws of the time, and predicted another run
+    with 2.31 µm instead of 1.34 without a law.
 
     Args:
         seen: Touches from which it was learnt.
@@ -190,11 +190,15 @@ def _of_its_run(one: LearntLaw, seen: Touches, policy: LawPolicy) -> LearntLaw:
     rivals = [replace(r, law=replace(r.law, is_of_run=not r.law.rests(seen))) for r in one.rivals]
     one = replace(one, rivals=tuple(rivals))
     stand_in = [
-        f.driver.values(seen)
+        f.driver
         for f in one.law.factors
         if f.driver.nature in STAND_IN and f.shape.word not in PROPORTIONAL
     ]
-    is_clock = any(abs(spearmanr(seen.time, x).statistic) > CLOCK_OF_RUN for x in stand_in)
+    is_clock = any(
+        abs(spearmanr(seen.time, driver.values(seen)).statistic) > CLOCK_OF_RUN
+        for driver in stand_in
+        if driver.nature == "level"
+    )
     is_open = is_clock or bool(stand_in and one.run_odds < policy.open_driver)
     is_of_run = is_open or not one.law.rests(seen)
     elsewhere = tuple(apart_elsewhere(one.law.carrier, one.alike, seen)) if one.alike else ()

@@ -285,6 +285,7 @@ def test_a_formula_is_not_largest_at_a_gross_error(stylus) -> None:
         ("law(EXX,bump T-spindle)", "run"),
         ("law(EXX,lin T-spindle)", "machine"),  # a body that expands in proportion
         ("law(EXX,bump T-room)", "machine"),
+        ("law(EXX,log time)", "machine"),  # a creep from the start of every run, which came to rest
     ],
 )
 def test_a_temperature_that_only_rises_is_a_clock_of_its_run(name, owner, stylus) -> None:
@@ -292,7 +293,9 @@ def test_a_temperature_that_only_rises_is_a_clock_of_its_run(name, owner, stylus
     since = touches.since_start / touches.since_start[-1]
     readings = {"spindle": 20.0 + since**2, "room": 20.0 + np.sin(12.0 * since)}
     touches = replace(touches, temperature=readings)
-    law = parse_effect(name, touches.chain).tuned(*[20.5, 1.0][: 2 * ("bump" in name)])
+    law = parse_effect(name, touches.chain)
+    places = {"bump": (20.5, 1.0), "log": (0.0, 60.0)}
+    law = law.tuned(*places.get(law.factors[0].shape.word, ()))
     one = LearntLaw(law, (), score=100.0, charge=0.0, curve=0.0, drift=0.0, rivals=())
     assert _of_its_run(one, touches, POLICY).law.belongs_to == owner
 
