@@ -114,6 +114,8 @@ def passed_over(tree: ast.Module) -> set[int]:
         match node:
             case ast.keyword(arg="strict" | "check"):  # a second look at what is always so
                 parts = [node]
+            case ast.Call(func=ast.Attribute(attr="reshape")):  # of -2 numpy makes the same
+                parts = [n for n in node.args if ast.unparse(n) == "-1"]
             case ast.ClassDef():
                 parts = [*node.decorator_list]
             case ast.FunctionDef():

@@ -4,6 +4,7 @@ from itertools import combinations
 
 import numpy as np
 import pytest
+from scipy.optimize import approx_fprime
 
 from matstd.information.criteria import (
     DesignCriterion,
@@ -18,6 +19,7 @@ from matstd.information.criteria.measures import (
     LargestVariance,
     MeanVariance,
 )
+from matstd.information.criteria.tangents import LogDeterminant, Trace
 from matstd.information.selection import Quota, Selection, exchange, fill, relaxed, rounded
 from matstd.information.selection.shares import keeps, largest_sum
 from matstd.twin.errors import DesignError
@@ -243,3 +245,17 @@ def test_the_five_are_their_definitions_over_the_same_directions():
     for name, criterion in five.items():
         rows = criterion.rows(W)
         assert criterion.value(rows.T @ rows) == pytest.approx(expected[name], rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("measure", "along"),
+    [
+        (LogDeterminant(3.0), lambda t, a, b, c, d: 3.0 * np.log(1.0 + b * t - d * t * t)),
+        (Trace(np.eye(2)), lambda t, a, b, c, d: (a * t - c * t * t) / (1.0 + b * t - d * t * t)),
+    ],
+    ids=["log det", "trace"],
+)
+def test_slopes_of_a_flow_are_those_of_differences(measure, along) -> None:
+    factors = 0.7, 0.4, 0.2, 0.3
+    slope = approx_fprime([0.6], lambda t: along(t[0], *factors))
+    assert measure.flow_slope(0.6, *factors) == pytest.approx(slope[0], rel=1e-6)

@@ -4,11 +4,13 @@ import importlib
 import inspect
 import shlex
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 from matstd.api.machines import machine_file
 from matstd.cli import COMMANDS, FOLDERS, _parser, main
+from matstd.commands.measured.diagnose import _unexplained
 from matstd.next_steps import _AFTER, BY_RESULT, next_line
 
 CALLS = """
@@ -155,6 +157,24 @@ def test_what_the_command_found_decides(tmp_path) -> None:
     assert next_line(args) == ""
     args.next = ("matstd compensate OUT/model.toml", "tables for the control")
     assert next_line(args) == "next: matstd compensate OUT/model.toml   (tables for the control)"
+
+
+@pytest.mark.parametrize(
+    ("laws", "words"),
+    [
+        (None, "matstd learn run.csv -o OUT-law"),
+        ({"laws": ()}, "matstd diagnose run.csv again.csv -o OUT-2"),
+        ({"laws": (1,), "of_library": ["drift"]}, "matstd diagnose run.csv --add drift -o OUT-2"),
+        (
+            {"laws": (1,), "of_library": [], "effect_names": ["learnt-law"]},
+            "matstd diagnose run.csv --effects OUT/effect.py --add learnt-law -o OUT-2",
+        ),
+    ],
+)
+def test_what_remains_gets_a_law_a_name_or_another_run(laws, words) -> None:
+    args = parsed(["diagnose", "run.csv", "-o", "OUT"])
+    found = SimpleNamespace(laws=laws and SimpleNamespace(**laws))
+    assert _unexplained(args, found)[0] == words
 
 
 def test_the_line_stands_at_the_end(tmp_path, capsys) -> None:

@@ -90,6 +90,7 @@ def test_every_axis_has_its_joint_and_its_travel(chain):
     b = files["machine.ini"].split("[AXIS_B]")[1].split("[AXIS_C]")[0]
     assert "MIN_LIMIT = -110.0" in b
     assert "TYPE = ANGULAR" in b
+    assert b.count("HOME = 0.0\n") == b.count("HOME_OFFSET = 0.0\n") == 1
     assert "[JOINT_3]" in b
     hal = files["machine.hal"]
     assert hal.count("motor-pos-fb") == 5

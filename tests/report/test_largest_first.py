@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from matstd.diagnosis.geometry import Estimate, GeometryRow, LearntGeometry, Quantity
 from matstd.diagnosis.policy import POLICY
-from matstd.report.geometry.geometry_words import noted_lines, rotary_lines
+from matstd.report.geometry.geometry_words import _is_usual, noted_lines, rotary_lines
 from matstd.twin.units import UM, URAD
 
 
@@ -65,3 +65,9 @@ def test_a_line_of_a_rotary_axis_beyond_twice_the_usual_is_explained():
     assert "EX0C has 2.5 times that: the model corrects that" in explained
     assert f"{POLICY.far_line:g} times and more is taken for a mistake" in explained
     assert said(400.0).endswith("usual ± 64 µm")  # which a line of its own calls a mistake
+
+
+def test_of_a_rotary_axis_its_positioning_is_asked_for_most() -> None:
+    motion = row(Quantity.ROTARY_MOTION, "ECC", ("C",), "rad", URAD, URAD, 100.0, URAD)
+    assert _is_usual(motion)
+    assert not _is_usual(replace(motion, symbol="EAC"))
