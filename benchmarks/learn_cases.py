@@ -4,6 +4,7 @@
     python benchmarks/learn_cases.py --make 17 --seed 1     exactly simulated, a family each
     python benchmarks/learn_cases.py --two 8 --seed 1       two laws at once
     python benchmarks/learn_cases.py --further 20 --seed 5  families that the learner never saw
+    python benchmarks/learn_cases.py --outside 36 --seed 5  those without a formula in the grammar
     python benchmarks/learn_cases.py --deleted 8 --seed 1   an effect whose driver is not recorded
     python benchmarks/learn_cases.py --empty 20 --seed 1    nothing hidden: no law may be found
 
@@ -237,6 +238,7 @@ def main() -> None:
     parser.add_argument("--make", type=int, default=0, help="number of simulated cases")
     parser.add_argument("--two", type=int, default=0, help="number of cases with two laws at once")
     parser.add_argument("--further", type=int, default=0, help="number of cases of other families")
+    parser.add_argument("--outside", type=int, default=0, help="number without a formula")
     parser.add_argument("--deleted", type=int, default=0, help="number without their driver")
     parser.add_argument("--empty", type=int, default=0, help="number of cases with nothing hidden")
     parser.add_argument("--same-clock", action="store_true", help="clocks show the same times")
@@ -247,6 +249,8 @@ def main() -> None:
         named = [FAMILIES[i % len(FAMILIES)] for i in range(a.make)]
         pairs = [f"{FAMILIES[(5 * i) % 17]}+{FAMILIES[(5 * i + 8) % 17]}" for i in range(a.two)]
         other = [FURTHER[i % len(FURTHER)] for i in range(a.further)]
+        # each turn begins one later, so that a family meets every machine
+        other += [OUTSIDE[(i + i // len(OUTSIDE)) % len(OUTSIDE)] for i in range(a.outside)]
         folders += make(
             [*named, *pairs, *other, *[None] * a.empty], a.seed, Path(scratch), a.same_clock
         )
