@@ -20,6 +20,11 @@ from matstd.twin.errors import DesignError, NotBuildable, NotReachable
 from matstd.twin.frames import Array
 from matstd.twin.units import DEG
 
+_LARGER, _SMALLER = (1.1, 1.25, 1.5), (0.95, 0.9, 0.85)  # sides of the blank
+_GAP_SHARES = (0.5, 0.2)  # of the gap
+_SLOPE_STEPS = (5.0, 15.0, 30.0)  # degrees
+_MAX_SLOPE = 60.0  # degrees, that any face has
+
 
 @dataclass(frozen=True, eq=False)
 class Feasibility:
@@ -69,12 +74,6 @@ def feasibility(brief: Brief) -> Feasibility:
         refusal = NotBuildable(str(error), **error.facts, wishes=wanted)
         return Feasibility(found.tried, found.poses, room, refusal)
     return Feasibility(found.tried, found.poses, room)
-
-
-_LARGER, _SMALLER = (1.1, 1.25, 1.5), (0.95, 0.9, 0.85)  # sides of the blank
-_GAP_SHARES = (0.5, 0.2)  # of the gap
-_SLOPE_STEPS = (5.0, 15.0, 30.0)  # degrees
-_MAX_SLOPE = 60.0  # degrees, that any face has
 
 
 def room_of(brief: Brief, poses: Array) -> Room:

@@ -35,6 +35,11 @@ _SETTINGS = {
 }
 
 
+_FIRST = "MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION("
+_ENTITY = re.compile(r"^#(\d+) = (.*?);$", re.S | re.M)
+_REFERENCE = re.compile(r"#(\d+)")
+
+
 @dataclass(frozen=True, slots=True)
 class Origin:
     """Where a STEP file comes from, for its header."""
@@ -153,11 +158,6 @@ def in_ascii(words: str) -> str:
 
 def _colour(rgb: tuple[float, float, float]) -> Any:
     return Quantity_Color(*rgb, Quantity_TypeOfColor.Quantity_TOC_sRGB)
-
-
-_FIRST = "MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION("
-_ENTITY = re.compile(r"^#(\d+) = (.*?);$", re.S | re.M)
-_REFERENCE = re.compile(r"#(\d+)")
 
 
 def with_reproducible_order(whole: str) -> str:

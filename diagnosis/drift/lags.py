@@ -1,4 +1,7 @@
-"""Drives at once, and drives that are followed with time constants: columns of linear laws."""
+"""Drives at once, and drives that are followed with time constants: columns of linear laws.
+
+Displacements that change before the speed that drives them show two clocks that do not agree.
+"""
 
 from dataclasses import dataclass
 
@@ -12,6 +15,12 @@ LAGS = tuple(minutes * MINUTE for minutes in (4.0, 16.0, 64.0, 256.0))
 """Time constants of first-order lags, s; neighbours, a factor of four apart, imitate any between
 them to 5 % of a step.
 """
+
+MAX_LEAD = 2.0 * HOUR  # longest lead that is looked for, s
+
+MAX_SHARE_LEFT = 0.8
+"""Residual of the changes with the lead over the residual without it, below which the lead counts.
+Records of a real and of a simulated spindle leave 0.98 and more at every lead."""
 
 
 @dataclass(frozen=True)
@@ -64,13 +73,6 @@ def lagged_drives(record: DriftRecord, temperatures: bool) -> Lagged:
     lagged = list(record.drives) if temperatures else speeds
     plain = tuple((name, 0.0) for name in record.drives if name not in speeds)
     return Lagged((*plain, *((name, tau) for tau in LAGS for name in lagged)))
-
-
-MAX_LEAD = 2.0 * HOUR  # longest lead that is looked for, s
-
-MAX_SHARE_LEFT = 0.8
-"""Residual of the changes with the lead over the residual without it, below which the lead counts.
-Records of a real and of a simulated spindle leave 0.98 and more at every lead."""
 
 
 def lead(record: DriftRecord) -> float:

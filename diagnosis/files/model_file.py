@@ -30,6 +30,13 @@ from matstd.twin.units import UM
 FORMAT, OLDER = "model/2", "model/1"
 """Version that is written, and one that is read: it has no hash of its machine."""
 
+LARGEST_VARIANCE, SMALLEST_VARIANCE = 1e12, 1e-300
+"""Variances of a file beyond the first (µm, µrad squared ...) are slips; of none below the second a
+root is taken."""
+
+MAX_ROUNDING = 1e-6
+"""By so much rounding may leave correlations of a file beyond one, or variances below zero."""
+
 
 class MemoryEntry(Table):
     """`[source.memory]`: what the noise of the run remembered."""
@@ -324,14 +331,6 @@ def _from_inner(rows: list[list[float]], factors: Array, path: str | Path) -> Ar
     return np.array(rows, dtype=float) * factors[:, None]
 
 
-LARGEST, SMALLEST = 1e12, 1e-300
-"""Variances of a file beyond the first (µm, µrad squared ...) are slips; of none below the second a
-root is taken."""
-
-MAX_ROUNDING = 1e-6
-"""By so much rounding may leave correlations of a file beyond one, or variances below zero."""
-
-
 def covariance_of(rows: list[list[float]], factors: Array, path: str | Path) -> Array:
     """Covariance in base units from its lower triangle."""
     n = len(factors)
@@ -350,11 +349,11 @@ def covariance_of(rows: list[list[float]], factors: Array, path: str | Path) -> 
 def _check_covariance(matrix: Array, path: str | Path) -> None:
     """Refuse numbers that no covariance has: correlations beyond one, variances below zero."""
     variance = np.diag(matrix)
-    wrong = np.flatnonzero(~((variance >= 0.0) & (variance < LARGEST)))
+    wrong = np.flatnonzero(~((variance >= 0.0) & (variance < LARGEST_VARIANCE)))
     if len(wrong):
         i = int(wrong[0])
         raise BadFile(path, f"covariance[{i}][{i}]", matrix[i, i], "a variance")
-    sd = np.sqrt(np.maximum(variance, SMALLEST))
+    sd = np.sqrt(np.maximum(variance, SMALLEST_VARIANCE))
     correlation = matrix / np.outer(sd, sd)
     if np.abs(correlation).max(initial=0.0) > 1.0 + MAX_ROUNDING:
         i, j = (int(k) for k in np.argwhere(np.abs(correlation) > 1.0 + MAX_ROUNDING)[0])

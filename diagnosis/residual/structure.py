@@ -25,6 +25,9 @@ from matstd.twin.record import Touches
 FEATURE_DISTANCE = 1e4
 """Distance (mm) by which different features are held apart in the search for neighbours."""
 
+NEIGHBOURS = 5  # neighbours of a touch that are looked at
+MIN_GROSS = 3  # fewer gross errors than this make no crowd
+
 
 class Shape(Enum):
     """Kinds of patterns that are looked for."""
@@ -189,10 +192,6 @@ def _neighbour_pairs(touches: Touches) -> list[tuple[tuple[str, ...], IntArray, 
     if len(near) and names:
         out.append((names, near[:, 0], near[:, 1]))
     return out
-
-
-NEIGHBOURS = 5  # neighbours of a touch that are looked at
-MIN_GROSS = 3  # fewer gross errors than this make no crowd
 
 
 def crowds(touches: Touches, allowed: Mask, gross: Mask) -> dict[tuple[str, str], float]:

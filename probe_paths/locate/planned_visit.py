@@ -101,12 +101,13 @@ def _on_surfaces(table: CsvTable, standard: Standard) -> tuple[Array, Array]:
 def _schedule(head: str) -> tuple[VisitSchedule, float]:
     """The schedule of the first lines, and the number of touches before the standstill."""
 
-    def number(pattern: str, otherwise: float = np.nan) -> float:
+    def number(pattern: str, otherwise: float) -> float:
         found = re.search(pattern + r"([\d.]+)", head)
         return float(found[1]) if found else otherwise
 
-    warm_up, pause, slowness = map(number, ("warm_up_s = ", "pause_s = ", "slowness = "))
-    return VisitSchedule(warm_up, pause, slowness), number("after touch ", np.inf)
+    warm_up, pause = number("warm_up_s = ", 0.0), number("pause_s = ", 0.0)
+    schedule = VisitSchedule(warm_up, pause, number("slowness = ", 1.0))
+    return schedule, number("after touch ", np.inf)
 
 
 MAX_DROPPED_SHARE = 0.1

@@ -1,6 +1,6 @@
 """Whether a law is expected in another run, in words, and what a second run says of it."""
 
-from matstd.diagnosis.laws import LearntLaw, SecondRun
+from matstd.diagnosis.laws import POLICY, LearntLaw, SecondRun
 from matstd.report.numbers import microns, odds_words
 from matstd.twin.laws import CLOCK
 
@@ -19,8 +19,10 @@ def run_sentence(one: LearntLaw) -> str:
     """Why a law is not expected in other runs, and what to record."""
     clocked = [f.shape for f in one.law.factors if f.driver == CLOCK]
     if not clocked:
-        odds = odds_words(one.run_odds)
-        what = f"It may stand for a driver that was not recorded (odds {odds} against that), and"
+        is_open = one.run_odds < POLICY.open_driver
+        odds = f"odds {odds_words(one.run_odds)} against that"
+        why = odds if is_open else "what it follows only rose or fell in this run, as the time does"
+        what = f"It may stand for a driver that was not recorded ({why}), and"
     elif any(s.relaxes for s in clocked) and not any(s.is_placed for s in clocked):
         what = "It had not come to rest when the run ended, may be a drift, and"
     elif any(shape.word in _SWITCHES for shape in clocked):

@@ -15,6 +15,8 @@ from matstd.twin.units import DEG
 LARGE_TABLE = 1.6
 """Width of a table over that of what stands on it, from which on it is not drawn to its edges."""
 
+_PER_MM = 0.14  # of the length of an arrow, so that it is 7 mm long
+
 
 def draw_setup(plan: TouchPlan) -> Figure:
     """Table, standard and clamps from above, and the probe from the side.
@@ -110,9 +112,6 @@ def _probe(ax: Any, plan: TouchPlan) -> None:
     ax.set(aspect="equal", xlabel="mm", ylabel="above the ball centre in mm")
     ax.set_title("probe; dashed: gauge line", loc="left")
     plain(ax)
-
-
-_PER_MM = 0.14  # of the length of an arrow, so that it is 7 mm long
 
 
 def draw_touches(plan: TouchPlan) -> Figure:

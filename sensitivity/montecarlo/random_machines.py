@@ -20,11 +20,13 @@ from matstd.twin.numbers import rms_length
 from matstd.twin.record import at_poses
 
 MACHINES_A_BATCH = 20 * DRAWS_A_CHILD
-"""10 240: as many as JCGM 101, 7.9.4 b) wants for a coverage of up to 99 %."""
+"""10 240: JCGM 101, 7.9.4 b) requires 10 000 trials for a coverage probability of 99 %."""
 _SPAN = 5.0
 """The histogram of |d| at a pose reaches to this multiple of its root mean square. A sum of many
 independent errors exceeds it in less than one case of a million, and then sits in the last bin."""
 _MIN_SCALE = 1e-12  # mm: scale of the histogram where no machine has an error
+
+WORST_SHARE = 0.05  # share of the poses that counts as the worst ones of a machine
 
 
 class Batch(NamedTuple):
@@ -95,9 +97,6 @@ def seed_words(rng: np.random.Generator) -> str:
     if source.spawn_key:
         words += "/" + ".".join(str(k) for k in source.spawn_key)
     return words + (f"+{source.n_children_spawned}" if source.n_children_spawned else "")
-
-
-WORST_SHARE = 0.05  # share of the poses that counts as the worst ones of a machine
 
 
 def volumetric(

@@ -5,6 +5,7 @@ import pytest
 from unchanged import folded, page_text
 
 from matstd.api.replanning import planned_visit
+from matstd.probe_paths.locate.planned_visit import VisitSchedule, read_visit
 from matstd.twin.errors import BadFile
 from matstd.twin.units import DEG
 
@@ -72,6 +73,14 @@ def test_a_visit_of_something_else_is_refused(design, visit, old, new, line) -> 
     visit.write_text(visit.read_text().replace(old, new), encoding="utf-8")
     with pytest.raises(BadFile, match=line):
         planned_visit(visit, design)
+
+
+def test_touches_of_ones_own_without_a_first_line_are_made_at_the_usual_pace(
+    visit, plan, chain
+) -> None:
+    visit.write_text(visit.read_text().removeprefix(HEAD), encoding="utf-8")
+    _, schedule = read_visit(visit, chain, plan.standard)
+    assert schedule == VisitSchedule(warm_up=0.0, pause=0.0, slowness=1.0)
 
 
 def test_touches_beside_the_standard_are_refused(design, visit) -> None:
