@@ -83,7 +83,7 @@ class Writer:
         self.tilting = self.language.tilting if tilted and dialect.has_planes else None
         if tilted and self.tilting is None:
             raise DesignError("coordinates of tilted planes: the control has no PLANE SPATIAL")
-        self.frame = ProgramFrame(plan.chain, plan.probe)
+        self.frame = plan.frame
         self.rotary = plan.chain.rotary_axes
         self.tests = interlocks(self.language, self.frame)
         self.number = {name: i + 1 for i, name in enumerate(plan.standard.features)}
@@ -101,9 +101,7 @@ class Writer:
             is_tilted=self.tilting is not None,
             sensors=() if is_first else dialect.sensors,
         )
-        top = plan.chain.link("Z").range[1]
-        self.top = top - plan.options.retract
-        self.retract = self.language.retract(self.top)
+        self.retract = self.language.retract(plan.top)
 
     def text(self, name: str, title: str, part: list[int], duration: float) -> str:
         """Whole text of a program that makes the visits `part`."""
@@ -312,7 +310,7 @@ class Writer:
         """Moves to the same places at a greater height, without touches."""
         assert self.raised is not None
         k, z = self.language, self.plan.chain.axis_index("Z")
-        high = min(visit.height + self.raised, self.top)
+        high = min(visit.height + self.raised, self.plan.top)
         up, out = k.line({"Z": frame.coordinate("Z", high)}, None), []
         for count, row in enumerate(rows):
             start = frame.coordinates(self.plan.start[row], "XY")
@@ -342,7 +340,7 @@ class Writer:
         k = self.language
         missed = [
             k.label(Label.NO_CONTACT, "NOTRIGGER: NO CONTACT"),
-            k.retract_max(self.top),
+            k.retract_max(self.plan.top),
             k.wait,
             self._print(f"{SharedMask.NO_CONTACT}.A", name),
             k.operator_stop,

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from matstd.artefact.body import DatumSphere, Standard
+from matstd.artefact.body import DatumSphere
 from matstd.artefact.reach import Requests
 from matstd.probe_paths.emit import (
     Feeds,
@@ -21,7 +21,7 @@ from matstd.probe_paths.language import Dialect
 from matstd.probe_paths.locate.find import SPREADS, Spread
 from matstd.probe_paths.locate.search_plan import plan_search
 from matstd.probe_paths.plan import (
-    PlanOptions,
+    PlanTask,
     TouchPlan,
     home_readings,
     plan_touches,
@@ -66,7 +66,10 @@ def plan_ball(plan: TouchPlan, is_beside: bool = False) -> TouchPlan:
         standard = ball.beside(standard, plan.setup.T_table_artefact)
         balls, general = standard.spheres[-1:], replace(general, workshop=room, ball=ball)
     why = "the probe would run into something" if balls else "it has no ball"
-    for sphere, wanted in _without_deep_collisions(plan, standard, general, poses, balls):
+    task = PlanTask(
+        chain=plan.chain, probe=plan.probe, standard=standard, setup=plan.setup, options=general
+    )
+    for sphere, wanted in _without_deep_collisions(task, poses, balls):
         # the first touch of every visit is that of an anchor: on the same ball
         options = replace(general, anchor=sphere.name, tolerated=0, shortest_visit=2 * _RING)
         try:
@@ -80,21 +83,17 @@ def plan_ball(plan: TouchPlan, is_beside: bool = False) -> TouchPlan:
 
 
 def _without_deep_collisions(
-    plan: TouchPlan,
-    standard: Standard,
-    options: PlanOptions,
-    poses: Array,
-    balls: Sequence[DatumSphere],
+    task: PlanTask, poses: Array, balls: Sequence[DatumSphere]
 ) -> Iterator[tuple[DatumSphere, Requests]]:
     """Rings that may be touched, pose by pose: exact gaps take half a second a ring."""
-    reach = options.reach(plan.chain, plan.setup, plan.probe, _CERTAIN_COLLISION)
+    reach = task.reach(_CERTAIN_COLLISION)
     azimuth = np.arange(_RING) * 2.0 * np.pi / _RING
     for tilt, rotary in product(_TILTS, poses if balls else []):
         # one static check for the rings of all balls
         along = np.concatenate([[[0.0, 0.0, 1.0]], ring_normals(tilt, azimuth)])
-        every = ring_requests(plan.chain, plan.setup, balls, rotary, along)
+        every = ring_requests(task.chain, task.setup, balls, rotary, along)
         good = np.asarray(reach.is_reachable(every))
-        good[good] = reach.is_clear(standard, every[good])
+        good[good] = reach.is_clear(task.standard, every[good])
         for k in np.flatnonzero(good.reshape(len(balls), -1).all(axis=1)).tolist():
             yield balls[k], every[k * len(along) + np.arange(len(along))]
 

@@ -13,14 +13,7 @@ from matstd.artefact.reach import Workshop
 from matstd.artefact.tool import readings_at
 from matstd.probe_paths.locate.find import KNOWN, KNOWN_ANGLE, Spread, lifted
 from matstd.probe_paths.locate.relief import NO_SURFACE, PITCH, Relief
-from matstd.probe_paths.plan import (
-    PlanOptions,
-    Probe,
-    ToolClearance,
-    TouchPlan,
-    Visit,
-    home_readings,
-)
+from matstd.probe_paths.plan import PlanOptions, Probe, TouchPlan, Visit, home_readings
 from matstd.twin.errors import NotReachable
 from matstd.twin.frames import Array, apply
 from matstd.twin.machine import Chain, inverse_linear, linear_directions
@@ -196,23 +189,21 @@ def _plan(
 
 def _refuse_out_of_travel_or_collision(plan: TouchPlan, path: float) -> None:
     """Refuse a search that exceeds the travel or brings the tool to what stands on the table."""
-    chain = plan.chain
-    z = chain.axis_index("Z")
-    low, high = chain.travels.T
+    z = plan.chain.axis_index("Z")
+    low, high = plan.chain.travels.T
     end = plan.start.copy()
     end[:, z] -= path
-    top = high[z] - plan.options.retract
-    if np.any((end < low - 1e-9) | (plan.start > high + 1e-9)) or plan.visits[0].height > top:
+    is_out = np.any((end < low - 1e-9) | (plan.start > high + 1e-9))
+    if is_out or plan.visits[0].height > plan.top:
         raise NotReachable(
             f"a search from above would go from Z {plan.start[:, z].max():.0f} to "
             f"{end[:, z].min():.0f} mm and is out of travel: state a smaller spread"
         )
-    workshop = plan.options.workshop
-    room = ToolClearance(chain, plan.standard, plan.setup, plan.probe, workshop=workshop)
     # the standard is spared, as the touches are to meet it
-    ours = np.isin(room.bodies.name, [solid.name for solid in workshop.solids[1:]])
+    stands = [solid.name for solid in plan.options.workshop.solids[1:]]
+    ours = np.isin(plan.clearance.bodies.name, stands)
     spared = np.broadcast_to(~ours, (len(end), len(ours)))
-    gap, nearest = room.swept_gap(plan.start, end, spared=spared)
+    gap, nearest = plan.clearance.swept_gap(plan.start, end, spared=spared)
     worst = int(np.argmin(gap))
     if gap[worst] < 0.5:
         raise NotReachable(

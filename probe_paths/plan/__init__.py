@@ -24,6 +24,7 @@ from matstd.probe_paths.plan.order import short_order as short_order
 from matstd.probe_paths.plan.order import waypoints as waypoints
 from matstd.probe_paths.plan.planner import plan_touches as plan_touches
 from matstd.probe_paths.plan.touch_plan import PlanOptions as PlanOptions
+from matstd.probe_paths.plan.touch_plan import PlanTask as PlanTask
 from matstd.probe_paths.plan.touch_plan import Refusal as Refusal
 from matstd.probe_paths.plan.touch_plan import TouchPlan as TouchPlan
 from matstd.probe_paths.plan.touch_plan import requests_at as requests_at

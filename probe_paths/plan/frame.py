@@ -66,6 +66,10 @@ class ProgramFrame:
         """Columns of the rotary axes in arrays of readings."""
         return self.chain.rotary_columns
 
+    def whole(self, z: float) -> float:
+        """Z at the next whole millimetre in the program: an operator reads it at a glance."""
+        return self.reading("Z", np.ceil(self.coordinate("Z", z)))
+
     def _offset(self, letter: str) -> float:
         i = LINEAR.index(letter)
         pole = self.probe.tool_length if letter == "Z" else 0.0

@@ -5,15 +5,14 @@ sweep refuses is tried from inclined directions.
 """
 
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 
 from matstd.artefact.body import Standard
-from matstd.artefact.reach import ProbeReach, Requests, joined
+from matstd.artefact.reach import Requests, joined
 from matstd.artefact.tool import Probe, home_readings, solid_hull, swing_height, top_height
 from matstd.probe_paths.plan.approach import Approaches
-from matstd.probe_paths.plan.clearance import SMALLEST_GAP, Stage, ToolClearance, stroke_gaps
+from matstd.probe_paths.plan.clearance import SMALLEST_GAP, Stage, stroke_gaps
 from matstd.probe_paths.plan.frame import ProgramFrame
 from matstd.probe_paths.plan.heading import rounded_setup, rounded_workshop
 from matstd.probe_paths.plan.order import (
@@ -27,6 +26,7 @@ from matstd.probe_paths.plan.order import (
 from matstd.probe_paths.plan.touch_plan import (
     GRID,
     PlanOptions,
+    PlanTask,
     Refusal,
     TouchPlan,
     ring_normals,
@@ -41,47 +41,6 @@ from matstd.twin.units import DEG
 
 _GAP_MARGIN = 0.011  # mm: gaps are found to 0.01, readings in programs are rounded to 0.0001
 _ANCHOR_SPARE = 5.0 * DEG  # an anchor stays away from where the ball ends above its stem
-
-
-@dataclass(frozen=True, eq=False)
-class _Task:
-    """What shall be planned; fields as of `plan_touches`."""
-
-    standard: Standard
-    chain: Chain
-    probe: Probe
-    setup: Setup
-    options: PlanOptions
-
-    @cached_property
-    def clearance(self) -> ToolClearance:
-        """Room for the tool."""
-        workshop = self.options.workshop
-        return ToolClearance(self.chain, self.standard, self.setup, self.probe, workshop=workshop)
-
-    @cached_property
-    def frame(self) -> ProgramFrame:
-        """Words of programs."""
-        return ProgramFrame(self.chain, self.probe)
-
-    @property
-    def linear(self) -> list[int]:
-        """Columns of X, Y, Z."""
-        return self.frame.linear
-
-    @property
-    def top(self) -> float:
-        """Reading of Z where rotary axes may turn, mm."""
-        return self.chain.link("Z").range[1] - self.options.retract
-
-    def whole(self, z: float) -> float:
-        """The next whole millimetre in the program: an operator reads it at a glance."""
-        return self.frame.reading("Z", np.ceil(self.frame.coordinate("Z", z)))
-
-    @property
-    def probing(self) -> ProbeReach:
-        """What can be touched; exact gaps are computed later, with the whole approach."""
-        return self.options.reach(self.chain, self.setup, self.probe, room=-np.inf)
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,11 +81,11 @@ def plan_touches(
     options = options or PlanOptions()
     options = replace(options, workshop=rounded_workshop(options.workshop))
     setup = rounded_setup(setup)
-    ProgramFrame(chain, probe)
+    task = PlanTask(chain=chain, probe=probe, standard=standard, setup=setup, options=options)
+    ProgramFrame(chain, probe)  # refuses a machine that programs cannot name
     _check_requests(standard, chain, requests)
     # rounded first, so that plan and program state the same readings
     rotary = np.round(requests.rotary / GRID) * GRID
-    task = _Task(standard=standard, chain=chain, probe=probe, setup=setup, options=options)
     if stated is None:
         stops = visits(chain, rotary, options.overshoot, options.shortest_visit)
     else:
@@ -161,13 +120,13 @@ def _check_requests(standard: Standard, chain: Chain, requests: Requests) -> Non
             raise DesignError(f"no feature '{name}' on {standard.name}; available: {available}")
 
 
-def _with_heights(task: _Task, stops: list[Visit]) -> list[Visit]:
+def _with_heights(task: PlanTask, stops: list[Visit]) -> list[Visit]:
     """Visits with their clearance heights, after checking that the table can turn between them."""
     chain, probe, options = task.chain, task.probe, task.options
     solid = solid_hull(task.standard, task.setup, options.workshop)
     rotary = np.array([stop.rotary for stop in stops])
     tops = top_height(chain, rotary, solid, probe) + options.clearance
-    heights = np.array([task.whole(top) for top in tops])
+    heights = np.array([task.frame.whole(top) for top in tops])
     home = home_readings(chain)
     allowed, path = task.top - 0.5 * options.clearance, rotary_path(home, stops, home)
     swing = swing_height(chain, path, solid, probe, allowed).max(initial=-np.inf)
@@ -180,25 +139,26 @@ def _with_heights(task: _Task, stops: list[Visit]) -> list[Visit]:
     return [replace(stop, height=float(h)) for stop, h in zip(stops, heights, strict=True)]
 
 
-def _raised(task: _Task, stops: list[Visit], wanted: Requests) -> list[Visit]:
+def _raised(task: PlanTask, stops: list[Visit], wanted: Requests) -> list[Visit]:
     """Visits raised above all starts of their touches, as far as Z retracts."""
-    start = task.probing.readings(wanted, task.options.standoff)[:, task.linear[2]]
-    start = np.where(task.probing.is_reachable(wanted), start, -np.inf)
+    probing = task.reach()
+    start = probing.readings(wanted, task.options.standoff)[:, task.frame.linear[2]]
+    start = np.where(probing.is_reachable(wanted), start, -np.inf)
     out = []
     for stop in stops:
         highest = float(start[stop.rows].max(initial=-np.inf))
         if highest > stop.height:
-            stop = replace(stop, height=min(float(task.whole(highest)), task.top))
+            stop = replace(stop, height=min(task.frame.whole(highest), task.top))
         out.append(stop)
     return out
 
 
-def _examined(task: _Task, wanted: Requests) -> _Touches:
+def _examined(task: PlanTask, wanted: Requests) -> _Touches:
     """Touches in readings, with the first reason against each."""
-    options, probing = task.options, task.probing
+    options, probing = task.options, task.reach()
     contact = probing.readings(wanted)
     start = probing.readings(wanted, options.standoff)
-    direction = (contact - start)[:, task.linear] / options.standoff
+    direction = (contact - start)[:, task.frame.linear] / options.standoff
     return _Touches(
         feature=wanted.feature,
         point=wanted.point,
@@ -210,7 +170,7 @@ def _examined(task: _Task, wanted: Requests) -> _Touches:
     )
 
 
-def _cleared(task: _Task, wanted: Requests, height: Array) -> _Touches:
+def _cleared(task: PlanTask, wanted: Requests, height: Array) -> _Touches:
     """Touches in readings, some of them by another approach than along the normal.
 
     Reachable touches with room at the contact are tried from other sides before they are refused;
@@ -220,12 +180,12 @@ def _cleared(task: _Task, wanted: Requests, height: Array) -> _Touches:
     if not task.options.is_swept:
         return touches
     touches = _swept(task, touches, height)
-    is_open = (touches.reason != "") & task.probing.is_reachable(wanted)
+    is_open = (touches.reason != "") & task.reach().is_reachable(wanted)
     rows = np.flatnonzero(is_open)
     # without room at the contact no other approach helps
     room, _ = task.clearance.gap(touches.contact[rows])
     rows = rows[room >= task.options.smallest_gap]
-    linear = task.linear
+    linear = task.frame.linear
     ways = Approaches(
         clearance=task.clearance,
         contact=touches.contact[rows],
@@ -249,7 +209,7 @@ def _cleared(task: _Task, wanted: Requests, height: Array) -> _Touches:
     return touches
 
 
-def _swept(task: _Task, touches: _Touches, height: Array) -> _Touches:
+def _swept(task: PlanTask, touches: _Touches, height: Array) -> _Touches:
     """Touches with reasons added where the tool comes too close to an obstacle."""
     if not task.options.is_swept:
         return touches
@@ -261,7 +221,7 @@ def _swept(task: _Task, touches: _Touches, height: Array) -> _Touches:
     clearance = task.clearance
     start, enough = touches.start[rows], max(SMALLEST_GAP + _GAP_MARGIN, o.smallest_gap)
     direction = np.zeros(start.shape)
-    direction[:, task.linear] = touches.direction[rows]
+    direction[:, task.frame.linear] = touches.direction[rows]
     looks = stroke_gaps(
         clearance,
         start,
@@ -282,13 +242,13 @@ def _swept(task: _Task, touches: _Touches, height: Array) -> _Touches:
     return replace(touches, reason=reason)
 
 
-def _refusal(task: _Task, touches: _Touches, row: int, request: int) -> Refusal:
+def _refusal(task: PlanTask, touches: _Touches, row: int, request: int) -> Refusal:
     chain, q = task.chain, touches.contact[row]
     rotary = {a: float(q[chain.axis_index(a)]) for a in chain.rotary_axes}
     return Refusal(request, str(touches.feature[row]), rotary, str(touches.reason[row]))
 
 
-def _anchors(task: _Task, stops: list[Visit]) -> dict[int, tuple[_Touches, Refusal | None]]:
+def _anchors(task: PlanTask, stops: list[Visit]) -> dict[int, tuple[_Touches, Refusal | None]]:
     """The best possible anchor touch at every pose, or none and the reason."""
     poses = list({stop.pose: stop for stop in stops}.values())
     if not task.standard.spheres or not poses:
@@ -314,7 +274,7 @@ def _anchors(task: _Task, stops: list[Visit]) -> dict[int, tuple[_Touches, Refus
     }
 
 
-def _anchor_requests(task: _Task, stop: Visit) -> Requests:
+def _anchor_requests(task: PlanTask, stop: Visit) -> Requests:
     """Possible anchor touches of a pose, best first."""
     options = task.options
     spheres = sorted(task.standard.spheres, key=lambda s: s.name != options.anchor)
@@ -329,7 +289,7 @@ def _anchor_requests(task: _Task, stop: Visit) -> Requests:
 
 
 def _assembled(
-    task: _Task, stops: list[Visit], wanted: _Touches
+    task: PlanTask, stops: list[Visit], wanted: _Touches
 ) -> tuple[TouchPlan, list[Refusal]]:
     """The plan in order of execution, and refused anchors."""
     parts: list[_Touches] = []
@@ -339,7 +299,7 @@ def _assembled(
     kept: list[Visit] = []
     stops = [stop for stop in stops if np.any(wanted.reason[stop.rows] == "")]
     anchors = _anchors(task, stops)
-    sideways = task.linear[:2]  # every touch goes up and down
+    sideways = task.frame.linear[:2]  # every touch goes up and down
     for stop in stops:
         rows = stop.rows[wanted.reason[stop.rows] == ""]
         anchor, refusal = anchors.get(stop.pose, (wanted[rows[:0]], None))
@@ -373,7 +333,7 @@ def _assembled(
     return plan, failed
 
 
-def _first_good(task: _Task, candidates: _Touches) -> tuple[_Touches, Refusal | None]:
+def _first_good(task: PlanTask, candidates: _Touches) -> tuple[_Touches, Refusal | None]:
     """The first possible candidate, or none and the refusal of the first."""
     good = np.flatnonzero(candidates.reason == "")
     return candidates[good[:1]], None if len(good) else _refusal(task, candidates, 0, -1)

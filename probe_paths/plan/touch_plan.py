@@ -7,12 +7,15 @@ On every visit a datum sphere is touched first, at the same point in both visits
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
 from matstd.artefact.body import DatumSphere, Standard
 from matstd.artefact.reach import DatumBall, ProbeReach, Requests, Workshop
 from matstd.artefact.tool import OVERSHOOT, Probe, readings_at
+from matstd.probe_paths.plan.clearance import ToolClearance
+from matstd.probe_paths.plan.frame import ProgramFrame
 from matstd.probe_paths.plan.order import Visit
 from matstd.twin.frames import Array, IntArray
 from matstd.twin.machine import Chain, table_to_tool
@@ -54,20 +57,6 @@ class PlanOptions:
     tolerated: int = 0  # how many requests may be refused before the whole plan is
     # whether moves are swept with the whole tool; a plan that is timed and never run need not be
     is_swept: bool = True
-
-    def reach(self, chain: Chain, setup: Setup, probe: Probe, room: float) -> ProbeReach:
-        """What can be touched with these margins and some room, mm."""
-        return ProbeReach(
-            chain=chain,
-            setup=setup,
-            shape=probe.shape,
-            length=probe.length,
-            steepest=self.steepest,
-            room=room,
-            standoff=self.standoff,
-            search=self.search,
-            workshop=self.workshop,
-        )
 
 
 def requests_at(standard: Standard, feature: str, uv: Array, rotary: Array) -> Requests:
@@ -113,14 +102,50 @@ class Refusal:
 
 
 @dataclass(frozen=True, eq=False)
-class TouchPlan:
-    """Touches in the order of execution; rows of one visit stand together."""
+class PlanTask:
+    """What is planned: a standard in a set-up, the machine that probes it, and the margins."""
 
     chain: Chain
     probe: Probe
     standard: Standard
     setup: Setup
     options: PlanOptions
+
+    @cached_property
+    def clearance(self) -> ToolClearance:
+        """Room for the tool."""
+        workshop = self.options.workshop
+        return ToolClearance(self.chain, self.standard, self.setup, self.probe, workshop=workshop)
+
+    @cached_property
+    def frame(self) -> ProgramFrame:
+        """Words of programs."""
+        return ProgramFrame(self.chain, self.probe)
+
+    @property
+    def top(self) -> float:
+        """Reading of Z where rotary axes may turn, mm."""
+        return self.chain.link("Z").range[1] - self.options.retract
+
+    def reach(self, room: float = -np.inf) -> ProbeReach:
+        """What can be touched with these margins and some room, mm; whatever the room without."""
+        return ProbeReach(
+            chain=self.chain,
+            setup=self.setup,
+            shape=self.probe.shape,
+            length=self.probe.length,
+            steepest=self.options.steepest,
+            room=room,
+            standoff=self.options.standoff,
+            search=self.options.search,
+            workshop=self.options.workshop,
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class TouchPlan(PlanTask):
+    """Touches in the order of execution; rows of one visit stand together."""
+
     # table poses in order, each with its side of approach and clearance height
     visits: tuple[Visit, ...]
     visit: IntArray  # index into `visits`, (N,)

@@ -16,7 +16,6 @@ from matstd.artefact.reach import Requests
 from matstd.probe_paths.control import Clock, step_times
 from matstd.probe_paths.emit import Feeds, make_programs
 from matstd.probe_paths.plan import (
-    LINEAR,
     PlanOptions,
     Probe,
     TouchPlan,
@@ -141,7 +140,7 @@ def _each_pose_once(plan: TouchPlan, visits: tuple[Visit, ...] = ()) -> TouchPla
     for visit in visits or plan.visits:
         first.setdefault(visit.pose, visit)
     pose = np.array([visit.pose for visit in plan.visits])[plan.visit]
-    sideways = [plan.chain.axis_index(name) for name in LINEAR[:2]]
+    sideways = plan.frame.linear[:2]
     rows = []
     for k in first:
         mine = np.flatnonzero(pose == k)

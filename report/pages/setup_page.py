@@ -8,7 +8,7 @@ from matstd.compensation.field import MachineErrors
 from matstd.probe_paths.campaign import setup_tolerance
 from matstd.probe_paths.language import LANGUAGES, Label, Q, interlocks, turn_tests
 from matstd.probe_paths.locate import Companions
-from matstd.probe_paths.plan import SMALLEST_GAP, Heading, ProgramFrame, TouchPlan, calibration_hash
+from matstd.probe_paths.plan import SMALLEST_GAP, Heading, TouchPlan, calibration_hash
 from matstd.probe_paths.stations import Station
 from matstd.report.layout import Page, Picture, Section, Table, write_page
 from matstd.report.machine import PLAYBACK, write_playback
@@ -283,9 +283,9 @@ def _ball_step(others: Companions) -> str:
 
 def _alarms(plan: TouchPlan, station: Station) -> Section:
     """What every alarm tests, and what to check."""
-    missed, frame = int(Label.NO_CONTACT), ProgramFrame(plan.chain, plan.probe)
+    missed = int(Label.NO_CONTACT)
     language = LANGUAGES[station.dialect.language]
-    tests = [*interlocks(language, frame), *turn_tests(language, frame)]
+    tests = [*interlocks(language, plan.frame), *turn_tests(language, plan.frame)]
     lost = "a touch met nothing; Z is up, the log contains all touches so far"
     rows = [[str(missed), lost, "", "pose of the standard; is the probe switched on?"]]
     for label in dict.fromkeys(test.label for test in tests):
