@@ -128,12 +128,13 @@ class BadFile(DesignError, ValueError):
     """A file with unexpected content.
 
     Args:
-        where: The line or key.
+        where: The key, or the number of the line.
         found: What stood there.
         expected: What should stand there.
     """
 
-    def __init__(self, path: str | Path, where: str, found: object, expected: str) -> None:
+    def __init__(self, path: str | Path, where: str | int, found: object, expected: str) -> None:
+        where = where if isinstance(where, str) else f"line {where}"
         super().__init__(
             f"{_short(path, 300)}: {_short(where)}: found {_short(found, 300)}, "
             f"expected {_short(expected, 400)}",

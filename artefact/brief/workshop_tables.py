@@ -361,8 +361,7 @@ def _check_ball(workshop: WorkshopTable, path: Path) -> None:
         raise BadFile(path, "workshop.ball.stem_diameter_mm", found, expected)
     lowest = (0.0 if table is None else table.height_mm) + 0.5 * ball.diameter_mm
     if not ball.at_mm[2] > lowest:
-        expected = f"more than {lowest:g} in z"
-        raise BadFile(path, "workshop.ball.at_mm", list(ball.at_mm), expected)
+        raise BadFile(path, "workshop.ball.at_mm", list(ball.at_mm), f"more than {lowest:g} in z")
 
 
 def _check_temperatures(sensors: Mapping[str, TemperatureTable], path: Path) -> None:

@@ -343,16 +343,17 @@ def _check_face(
     far = _distance_from_face(patch, point[rows])
     worst = int(np.argmax(far))
     if far[worst] > _MAX_MISFIT:
+        line = cmm.line[rows[worst]]
         for other in nominal.patches:
             if other is not patch and _distance_from_face(other, point[rows]).max() <= _MAX_MISFIT:
                 found = f"points of {other.name} under the name {patch.name}"
                 raise BadFile(cmm.path, "feature", found, "every face under its own name")
         if neighbour := _on_another(nominal, patch, point[rows[worst]]):
-            line, found = f"line {cmm.line[rows[worst]]}", f"a point of {neighbour}"
-            raise BadFile(cmm.path, line, found, f"a point of {patch.name}, whose name it bears")
+            found, expected = f"a point of {neighbour}", f"a point of {patch.name}"
+            raise BadFile(cmm.path, line, found, f"{expected}, whose name it bears")
         raise BadFile(
             cmm.path,
-            f"line {cmm.line[rows[worst]]}",
+            line,
             f"a point {far[worst] / UM:.0f} µm from {patch.name}"
             if np.isfinite(far[worst])
             else f"a point beside {patch.name}",

@@ -54,9 +54,7 @@ def read_cmm_points(path: str | Path, standard: Standard) -> CmmPoints:
     names = [_feature(n, standard) for n in sheet.text(column)]
     for name, line in zip(names, sheet.lines, strict=True):
         if name not in (*standard.features, *SIDES):
-            raise BadFile(
-                path, f"line {line}", f"feature {name!r}", f"one of {', '.join(standard.features)}"
-            )
+            raise BadFile(path, line, f"feature {name!r}", f"one of {', '.join(standard.features)}")
     xyz = []
     for letter in "xyz":
         k = _column(sheet, (letter, f"{letter} actual", f"{letter} measured"), letter)
@@ -66,7 +64,7 @@ def read_cmm_points(path: str | Path, standard: Standard) -> CmmPoints:
         xyz.append(sheet.numbers(k) * MM.get(unit or "mm", 1.0))
     point = np.stack(xyz, axis=1)
     if len(gaps := np.flatnonzero(~np.isfinite(point).all(axis=1))):
-        raise BadFile(path, f"line {sheet.lines[gaps[0]]}", "no number", "x, y and z")
+        raise BadFile(path, sheet.lines[gaps[0]], "no number", "x, y and z")
     wide = [k for k, c in enumerate(sheet.columns) if _bare(c) in _DIAMETER]
     diameter = sheet.numbers(wide[0]) if wide else np.full(len(sheet), np.nan)
     if wide:

@@ -160,8 +160,7 @@ class _Reader:
                 self._change(said.line, self.next_tool)
         if "D" in said.other:
             if not {41.0, 42.0}.intersection(said.g):
-                found = f"D{said.other['D']:g}"
-                raise self.reading.refusal(said.line, found, "it with G41 or G42")
+                raise self.reading.refusal(said.line, f"D{said.other['D']:g}", "it with G41 or G42")
             self.reading.tool = int(said.other["D"])
 
     def _change(self, line: int, number: int) -> None:
@@ -232,8 +231,7 @@ class _Reader:
             return
         is_timed = modal.is_inverse_time and not is_rapid
         if is_timed and "F" not in said.other:
-            found = "a motion without F in inverse time"
-            raise reading.refusal(line, found, "F in every line")
+            raise reading.refusal(line, "a motion without F in inverse time", "F in every line")
         arc = self._arc(said, end) if modal.is_arc else None
         minutes = self.minutes if is_timed else 0.0
         reading.move(line, end, is_rapid, words, tuple(said.axes), arc, minutes)

@@ -74,7 +74,7 @@ class Reading:
 
     def refusal(self, line: int, found: str, expected: str) -> BadFile:
         """What is not understood, with its line."""
-        return BadFile(self.path, f"line {line}", found, expected)
+        return BadFile(self.path, line, found, expected)
 
     def column(self, line: int, letter: str) -> int:
         """Column of an axis of the program; raises BadFile."""

@@ -121,10 +121,10 @@ def read_part_program(
     text = read_any_text(path)
     if MARK in text:
         line = text[: text.index(MARK)].count("\n") + 1
-        raise BadFile(path, f"line {line}", MARK, "a program that was not compensated before")
+        raise BadFile(path, line, MARK, "a program that was not compensated before")
     if absurd := _ABSURD.search(text):
         line = text[: absurd.start()].count("\n") + 1
-        raise BadFile(path, f"line {line}", f"a number of {len(absurd[0])} digits", "30 at most")
+        raise BadFile(path, line, f"a number of {len(absurd[0])} digits", "30 at most")
     frame.linear  # noqa: B018  (a machine without them is refused before anything is read)
     reading = Reading(
         path=path,
@@ -158,4 +158,4 @@ def _check_travel(program: Program) -> None:
             unit = chain.link(chain.axes[k]).unit
             found = f"{chain.axes[k]} at a reading of {q[row, k] / unit:.3f}"
             expected = f"{low[k] / unit:g} to {high[k] / unit:g}; is --datum right?"
-            raise BadFile(program.path, f"line {own[row].line}", found, expected)
+            raise BadFile(program.path, own[row].line, found, expected)

@@ -129,7 +129,7 @@ def _slowed(
 
 
 def _refused(path: ProgramPath, k: int, found: str, expected: str) -> BadFile:
-    return BadFile(path.program.path, f"line {path.motions[k].line}", found, expected)
+    return BadFile(path.program.path, path.motions[k].line, found, expected)
 
 
 def _check(path: ProgramPath, k: int) -> None:

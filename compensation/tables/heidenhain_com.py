@@ -52,7 +52,7 @@ def read(folder: Path, chain: Chain) -> tuple[NamedTables, Header]:
             if _ROW.match(line):
                 words = line.split()
                 if len(words) != 3:
-                    raise BadFile(path, f"line {number}", f"{len(words)} columns", "3")
+                    raise BadFile(path, number, f"{len(words)} columns", "3")
                 rows.append([float(word) for word in words[1:]])
         nodes[axis], own = np.array(rows).T * link.unit
         values[axis] = heads[0].sign * np.outer(own, np.eye(6)[link.own_component])

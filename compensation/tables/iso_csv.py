@@ -59,7 +59,7 @@ def read(folder: Path, chain: Chain) -> tuple[NamedTables, Header]:
         if names[0] in chain.axes:
             expected = [names[0], *(f"E{c}{names[0]}" for c in LETTERS)]
             if names != expected:
-                raise BadFile(path, f"line {number}", " ".join(names), " ".join(expected))
+                raise BadFile(path, number, " ".join(names), " ".join(expected))
             nodes[names[0]] = rows[:, 0] * chain.link(names[0]).unit
             values[names[0]] = head.sign * rows[:, 1:]
         else:
@@ -96,7 +96,7 @@ def _numbers(path: Path, line: int, words: list[str], count: int) -> list[float]
     try:
         numbers = [float(word) for word in words]
     except ValueError:
-        raise BadFile(path, f"line {line}", " ".join(words), f"{count} numbers") from None
+        raise BadFile(path, line, " ".join(words), f"{count} numbers") from None
     if len(numbers) != count:
-        raise BadFile(path, f"line {line}", f"{len(numbers)} numbers", f"{count}, as in the head")
+        raise BadFile(path, line, f"{len(numbers)} numbers", f"{count}, as in the head")
     return numbers

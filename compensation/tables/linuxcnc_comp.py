@@ -54,7 +54,7 @@ def _table(path: Path, text: str, link: Link, sign: int) -> AxisTable:
         try:
             nominal, forward, reverse = (float(word) for word in line.split())
         except ValueError:
-            raise BadFile(path, f"line {number}", repr(line), "three numbers") from None
+            raise BadFile(path, number, repr(line), "three numbers") from None
         rows.append((nominal, sign * forward, sign * reverse))
     nodes, forward_all, reverse_all = np.array(rows).T * link.unit
     return AxisTable(link.name, link.name, nodes, forward=forward_all, reverse=reverse_all)

@@ -58,7 +58,7 @@ def read(folder: Path, chain: Chain) -> tuple[AxisTables, Header]:
         elif word is not None:
             words.setdefault(int(word[2]), {})[word[1]] = word[3]
         elif not line.startswith((";", "%", "CHANDATA", "M17")):
-            raise BadFile(path, f"line {number}", repr(line), "$AN_CEC...=...")
+            raise BadFile(path, number, repr(line), "$AN_CEC...=...")
     head = Header.of(text, path)
     made = [_table(chain, values[k], words[k], head.sign) for k in sorted(values)]
     return AxisTables(chain, tuple(made)), head

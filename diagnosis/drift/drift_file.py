@@ -131,7 +131,7 @@ def read_law(path: str | Path) -> SavedLaw:
             step=float(data["step_s"]),
         )
     except json.JSONDecodeError as error:
-        raise BadFile(path, f"line {error.lineno}", error.msg, "a thermal.json of ours") from None
+        raise BadFile(path, error.lineno, error.msg, "a thermal.json of ours") from None
     except (
         KeyError,
         TypeError,

@@ -130,8 +130,7 @@ def import_arm(
         raise DesignError(f"--machine, --dh: {given}; expected the arm by one of them")
     table = read_arm(sheet, machine.programmed_axes if machine else (), u_angle is not None)
     if u_angle is not None and table.turn is None:
-        expected = "columns qw qx qy qz, or rx ry rz with a unit, for --u-urad"
-        raise sheet.lacking(expected)
+        raise sheet.lacking("columns qw qx qy qz, or rx ry rz with a unit, for --u-urad")
     for how in couplings:
         table = replace(table, q=coupled(table.q, how))
     chain, turned, other = machine, np.eye(3), None

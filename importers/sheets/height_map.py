@@ -46,7 +46,7 @@ def _reprap(path: Path, lines: Sequence[tuple[int, str]]) -> Rows:
     if len(lines) < 3:
         raise BadFile(path, "file", "a head alone", "a line of names, one of numbers, a matrix")
     head = dict(zip(_split(lines[1][1].lower()), _split(lines[2][1]), strict=False))
-    where = f"line {lines[2][0]}"
+    where = lines[2][0]
     axes = [head.get("axis0", "X").upper(), head.get("axis1", "Y").upper()]
     if axes != ["X", "Y"]:
         raise BadFile(path, where, f"axes {' and '.join(axes)}", "X and Y")
@@ -92,8 +92,7 @@ def _points(path: Path, matrix: Sequence[tuple[int, str]], along: Axes, name: st
     for k, (line, text) in enumerate(matrix):
         cells = _split(text)
         if len(cells) != columns:
-            expected = f"{columns}, as the head says"
-            raise BadFile(path, f"line {line}", f"{len(cells)} heights", expected)
+            raise BadFile(path, line, f"{len(cells)} heights", f"{columns}, as the head says")
         out += [
             (line, [f"{x + i * dx:.12g}", f"{y + k * dy:.12g}", cell, name])
             for i, cell in enumerate(cells)
@@ -106,7 +105,7 @@ def _split(line: str) -> list[str]:
     return [cell.strip() for cell in line.rstrip(", ").split(",")]
 
 
-def _number(path: Path, where: str, head: dict[str, str], *names: str) -> float:
+def _number(path: Path, where: str | int, head: dict[str, str], *names: str) -> float:
     """A number of the head under one of its names."""
     found = next((head[name] for name in names if name in head), "nothing")
     try:

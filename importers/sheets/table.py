@@ -169,7 +169,7 @@ def _decimal_mark(path: Path, rows: Sequence[tuple[int, list[str]]]) -> str:
     points = [line for line, row in rows if any(_DECIMAL_POINT.match(c) for c in row)]
     if commas and points:
         found = f"decimal commas, and decimal points in line {points[0]}"
-        raise BadFile(path, f"line {commas[0]}", found, "one decimal mark in the whole file")
+        raise BadFile(path, commas[0], found, "one decimal mark in the whole file")
     return "," if commas else "."
 
 
@@ -213,8 +213,7 @@ def _table(
     if not above and not names and isinstance(rows[first][1][0], str):
         names = [f"column {i + 1}" for i in range(width)]  # rows have names, as columns have else
     if not above and not names:
-        expected = "a line of column names above, or --columns"
-        raise BadFile(path, f"line {rows[first][0]}", "numbers", expected)
+        raise BadFile(path, rows[first][0], "numbers", "a line of column names above, or --columns")
     if names and len(names) != width:
         raise BadFile(path, "table", f"{width} columns", f"{len(names)}, as --columns names them")
     header = tuple(names) or _header([rows[i][1][:width] for i in above[-3:]])

@@ -54,8 +54,7 @@ def machine_file(name: str, errors: bool = False) -> Path:
     """
     names = machine_names()
     if name not in names:
-        expected = f"one of {', '.join(names)}{did_you_mean(name, names)}"
-        raise BadArgument("machine", name, expected)
+        raise BadArgument("machine", name, f"one of {', '.join(names)}{did_you_mean(name, names)}")
     return Path(str(files("matstd").joinpath("machines", f"{name}{ERRORS if errors else ''}.toml")))
 
 

@@ -22,7 +22,7 @@ def label_places(found: Iterable[tuple[int, int, str]], path: Path) -> dict[str,
     for index, line, name in found:
         if name in places:
             expected = f"every label once; it is in line {lines[name]}"
-            raise BadFile(path, f"line {line}", f"LBL {name} again", expected)
+            raise BadFile(path, line, f"LBL {name} again", expected)
         if name != "0":
             places[name], lines[name] = index, line
     return places
@@ -46,14 +46,14 @@ class Flow:
         self.executed += 1
         if self.executed > self.most:
             found = f"a loop without end: {self.most} blocks"
-            raise BadFile(self.path, f"line {line}", found, "a program that ends")
+            raise BadFile(self.path, line, found, "a program that ends")
 
     def behind(self, line: int, name: str) -> int:
         """Index of the block behind a label; raises BadFile for one that is not defined."""
         if name not in self.places:
             available = ", ".join(self.places) or "none"
             expected = f"a label that is defined; available: {available}"
-            raise BadFile(self.path, f"line {line}", f"LBL {name}", expected)
+            raise BadFile(self.path, line, f"LBL {name}", expected)
         return self.places[name] + 1
 
     def call(self, index: int, line: int, name: str) -> int:
@@ -61,7 +61,7 @@ class Flow:
         start = self.behind(line, name)
         if len(self.returns) >= MAX_DEPTH:
             found = f"subprograms {len(self.returns) + 1} deep"
-            raise BadFile(self.path, f"line {line}", found, f"{MAX_DEPTH} at most")
+            raise BadFile(self.path, line, found, f"{MAX_DEPTH} at most")
         self.returns.append(index + 1)
         return start
 

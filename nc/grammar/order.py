@@ -67,7 +67,7 @@ class _Run:
         self.flow = Flow(path, places, MAX_BLOCKS)
 
     def _refusal(self, block: Block, found: str, expected: str) -> BadFile:
-        return BadFile(self.path, f"line {block.line}", found, expected)
+        return BadFile(self.path, block.line, found, expected)
 
     def blocks(self) -> Iterator[Block]:
         """Those that do something, in their order."""

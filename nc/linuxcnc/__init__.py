@@ -60,10 +60,10 @@ class Ini:
             self._ini.read_string(self._text)
         except configparser.MissingSectionHeaderError as error:
             expected = "a section such as [EMC]: an INI file of LinuxCNC"
-            raise BadFile(path, f"line {error.lineno}", repr(error.line), expected) from None
+            raise BadFile(path, error.lineno, repr(error.line), expected) from None
         except configparser.ParsingError as error:
             number, line = error.errors[0]
-            raise BadFile(path, f"line {number}", line, "an INI file of LinuxCNC") from None
+            raise BadFile(path, number, line, "an INI file of LinuxCNC") from None
         # axes of the control, in its order
         self.letters = self.value("TRAJ", "COORDINATES").replace(" ", "").upper()
 

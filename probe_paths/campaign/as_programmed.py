@@ -44,15 +44,14 @@ def check_numbers(parts: Sequence[LogPart]) -> None:
 
 def _check_steps(part: LogPart) -> None:
     """Refuse a clock that stands still and positions that are rounded."""
-    last = f"line {part.line[-1]}"
     if np.ptp(part.time) == 0.0:
         found = f"the same time at all {len(part.time)} touches"
         expected = "a clock that runs: one that stands hides every drift"
-        raise BadFile(part.path, last, found, expected)
+        raise BadFile(part.path, part.line[-1], found, expected)
     steps = part.xyz / COARSEST_STEP
     if np.allclose(steps, np.round(steps), rtol=0.0, atol=1e-4):
         found = f"positions in steps of {COARSEST_STEP:g} mm or more at all touches"
-        raise BadFile(part.path, last, found, "six decimals, as the program prints them")
+        raise BadFile(part.path, part.line[-1], found, "six decimals, as the program prints them")
 
 
 def _check_common(key: str, parts: Sequence[LogPart]) -> None:
@@ -86,7 +85,7 @@ def check_as_programmed(
         for i, number in enumerate(part.number.tolist()):
             if number not in planned_touches:
                 expected = f"one of the touches of {program.path.name}"
-                raise BadFile(part.path, f"line {part.line[i]}", f"touch {number}", expected)
+                raise BadFile(part.path, part.line[i], f"touch {number}", expected)
             _check_touch(part, i, planned_touches[number], program, chain)
 
 
@@ -94,7 +93,7 @@ def _check_touch(
     part: LogPart, i: int, touch: ProbeStep, program: ReadProgram, chain: Chain
 ) -> None:
     """Compare counters, sides and rotary positions of one touch with the program."""
-    where, number = f"line {part.line[i]}", int(part.number[i])
+    number = int(part.number[i])
     rows = [
         ("pose", int(part.pose[i]), touch.pose),
         ("feature", int(part.feature[i]), touch.feature),
@@ -105,11 +104,13 @@ def _check_touch(
         at, sent = float(part.rotary[letter][i]), float(touch.q[column]) / DEG
         if abs(at - sent) > SAME_ANGLE:
             found = f"{letter} at {at:.4f} degrees at touch {number}"
-            raise BadFile(part.path, where, found, f"{sent:.4f}, where it was sent")
+            raise BadFile(part.path, part.line[i], found, f"{sent:.4f}, where it was sent")
     for what, has, wanted in rows:
         if has != wanted:
             found = f"{what} {has:+d} at touch {number}"
-            raise BadFile(part.path, where, found, f"{wanted:+d}, as {program.path.name} has it")
+            raise BadFile(
+                part.path, part.line[i], found, f"{wanted:+d}, as {program.path.name} has it"
+            )
 
 
 def with_program_lines(run: Run, programs: Mapping[str, ReadProgram]) -> Run:

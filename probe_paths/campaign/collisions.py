@@ -106,8 +106,7 @@ def _check_touches(program: ReadProgram, clearance: ToolClearance) -> None:
     for i in np.flatnonzero(~good)[:1]:
         found = f"a ball that {met.meeting[i]} {met.feature[i]}".rstrip()
         wanted = f"touch {touches[i].number} on {feature[i]}"
-        wanted = "a touch in the air" if is_air[i] else wanted
-        raise BadFile(program.path, f"line {line[i]}", found, wanted)
+        raise BadFile(program.path, line[i], found, "a touch in the air" if is_air[i] else wanted)
     looks = stroke_gaps(clearance, start, direction, back, distance, feature, SMALLEST_GAP)
     for stage, (gap, nearest) in looks.items():
         least = stage.least_gap(clearance.probe.radius)
@@ -121,7 +120,7 @@ def _check_search(
     line = np.array([touch.line for touch in program.touches], dtype=np.int64)
     for i in np.flatnonzero(~is_met)[:1]:
         expected = "something of the standard under it"
-        raise BadFile(program.path, f"line {line[i]}", f"a ball that {met[i]}", expected)
+        raise BadFile(program.path, line[i], f"a ball that {met[i]}", expected)
     start = np.array([touch.q for touch in program.touches])
     gap, nearest = clearance.swept_gap(start, end, with_ball=False)
     _refuse(program, line, gap, nearest)
@@ -136,7 +135,7 @@ def _refuse(
         i = bad[np.argmin(line[bad])]
         raise BadFile(
             program.path,
-            f"line {line[i]}",
+            line[i],
             f"a gap of {gap[i]:.2f} mm to {nearest[i]}",
             f"at least {least:.2g} mm between probe and anything solid",
         )

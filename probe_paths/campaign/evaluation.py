@@ -286,7 +286,7 @@ def _split_by_gap(
         what = f"touch {part.number[i]} with {found} between ball and surface"
         if np.mean(~good) > LARGEST_OUTLIER_SHARE:
             raise BadFile(
-                part.path, f"line {part.line[i]}", what,
+                part.path, part.line[i], what,
                 f"less than {limit:g} mm: another feature, set-up, probe or meaning of Z",
             )  # fmt: skip
         remarks.append(f"{part.path}: line {part.line[i]}: {what}; it is left out")

@@ -69,7 +69,7 @@ def _check_alike(one: LogPart, other: LogPart) -> None:
         row = int(np.argmax(differ))
         found = f"touch {numbers[row]} of the run of {other.program} at {other.begin}"
         expected = f"the same numbers as in {one.path}, line {one.line[i[row]]}"
-        raise BadFile(other.path, f"line {other.line[k[row]]}", found, expected)
+        raise BadFile(other.path, other.line[k[row]], found, expected)
 
 
 def checked_parts(parts: Sequence[LogPart], standard: Standard) -> tuple[list[LogPart], list[str]]:
@@ -92,7 +92,7 @@ def checked_parts(parts: Sequence[LogPart], standard: Standard) -> tuple[list[Lo
                 f"feature {part.feature[0]}",
                 f"1 to {count}, a feature of {standard.name}",
             )
-            raise BadFile(part.path, f"line {part.line[0]}", found, expected)
+            raise BadFile(part.path, part.line[0], found, expected)
         remarks += [
             f"{part.path}: line {part.line[i]}: feature {part.feature[i]} is none of 1 to {count}; "
             f"touch {part.number[i]} is left out"

@@ -153,7 +153,7 @@ def interpret(
     for touch in program.touches:
         if not touch.is_air and touch.feature not in features:
             expected = "a number of the head's list (;FEATURE <number> IS <name>)"
-            raise BadFile(path, f"line {touch.line}", f"feature {touch.feature}", expected)
+            raise BadFile(path, touch.line, f"feature {touch.feature}", expected)
     return program
 
 
@@ -176,8 +176,8 @@ def _check_promise(stated: Promise, state: State, touches: Sequence[ProbeStep], 
         wanted = wanted[-len(made) :] if made else []
     if made != wanted:
         promised = f"touches {wanted[0]} to {wanted[-1]} in order" if wanted else "none: a dry run"
-        where, found = f"line {touches[-1].line}" if touches else "file", f"{len(made)} touches"
-        raise BadFile(path, where, f"{found} before M30", f"{promised}, as the head says")
+        where, found = touches[-1].line if touches else "file", f"{len(made)} touches before M30"
+        raise BadFile(path, where, found, f"{promised}, as the head says")
 
 
 def _probe(head: Heading, probe: Probe | None, path: Path) -> Probe:

@@ -101,13 +101,12 @@ def read_log(path: str | Path, rotary: Sequence[str], text: str | None = None) -
     lines = _lines(path, text)
     starts = [i for i, line in enumerate(lines) if _begins_part(lines, i, line[1])]
     if not starts:
-        found = repr(lines[0][1]) if lines else "nothing"
-        raise BadFile(path, "line 1", found, LOG_HEAD)
+        raise BadFile(path, 1, repr(lines[0][1]) if lines else "nothing", LOG_HEAD)
     parts: list[LogPart] = []
     refused: list[BadFile] = []
     for begin, end in pairwise([*starts, len(lines)]):
         if lines[begin][1] != LOG_HEAD and _VERSION.match(lines[begin][1]):
-            raise BadFile(path, f"line {lines[begin][0]}", repr(lines[begin][1]), LOG_HEAD)
+            raise BadFile(path, lines[begin][0], repr(lines[begin][1]), LOG_HEAD)
         try:
             parts.append(_PartReader(path, lines[begin:end], rotary).part())
         except BadFile as error:
@@ -209,13 +208,12 @@ class _PartReader:
     def _peek(self, expected: str) -> str:
         """The next line; refuses the end of the part."""
         if self.place >= len(self.lines):
-            last = f"line {self.lines[-1][0]}"
-            raise BadFile(self.path, last, "the end of the part after it", expected)
+            raise BadFile(self.path, self.lines[-1][0], "the end of the part after it", expected)
         return self.lines[self.place][1]
 
     def _refusal(self, expected: str) -> BadFile:
         line, text = self.lines[self.place]
-        return BadFile(self.path, f"line {line}", repr(text), expected)
+        return BadFile(self.path, line, repr(text), expected)
 
     def _date(self) -> datetime | None:
         """Day of the head; None, and a remark, where it cannot be read."""

@@ -148,8 +148,7 @@ def _tool_call(block: Block, state: State) -> None:
         raise state.refusal(block, "no speed: there is a probe in the spindle")
     if not state.is_tcpm_off or not state.is_retracted:
         terms = state.terms
-        expected = f"{terms.reset} and a retract with {terms.machine} before it"
-        raise state.refusal(block, expected)
+        raise state.refusal(block, f"{terms.reset} and a retract with {terms.machine} before it")
     state.tool = int(block.word("tool"))
     is_other = state.fault is not None and state.fault.datum is None
     state.parameters[TOOL_LENGTH] = state.frame.probe.tool_length + is_other * state.off

@@ -249,8 +249,7 @@ class Runner:
             stated = state.whole(block, q, f"side of {name}")
             if stated != touch.side[column]:
                 expected = f"{touch.side[column]:+.0f}, as it last moved"
-                found = f"{name} said to come from side {stated:+d}"
-                raise state.refusal(block, expected, found)
+                raise state.refusal(block, expected, f"{name} said to come from side {stated:+d}")
 
     def _print(self, block: Block, state: State) -> Print:
         """FN 16 with the present values."""
@@ -315,7 +314,7 @@ class Runner:
         if not is_branch or len(up) != 1 or up[0].checked:
             retract = language_of(self.path).terms.retract_max
             expected = f"{retract}, and no other move, after a touch without contact"
-            raise BadFile(self.path, f"line {block.line}", repr(block.text), expected)
+            raise BadFile(self.path, block.line, repr(block.text), expected)
 
     def check_logged(self) -> None:
         """Every touch ends up in the log; raises BadFile."""
@@ -323,4 +322,4 @@ class Runner:
             if touch.index not in self.logged and not touch.is_air:
                 found = f"touch {touch.number} without a log line"
                 expected = f"{language_of(self.path).terms.printed} with its results"
-                raise BadFile(self.path, f"line {touch.line}", found, expected)
+                raise BadFile(self.path, touch.line, found, expected)

@@ -85,7 +85,7 @@ class State:
 
     def refusal(self, block: Block, expected: str, found: str = "") -> BadFile:
         """The one clear line about a block; its text is what was found unless that is stated."""
-        return BadFile(self.path, f"line {block.line}", found or repr(block.text), expected)
+        return BadFile(self.path, block.line, found or repr(block.text), expected)
 
     def check_ready(self, block: Block, what: str) -> None:
         """Refuse a coordinate before preset, tool and a reset frame."""
@@ -140,8 +140,7 @@ class State:
         """Refuse a block between a touch and the test of its status."""
         if self.untested is not None:
             expected = f"{self.terms.status} first"
-            found = f"{block.text!r} after touch {self.untested + 1}"
-            raise self.refusal(block, expected, found)
+            raise self.refusal(block, expected, f"{block.text!r} after touch {self.untested + 1}")
 
     def write(self, block: Block, q: int, value: Value) -> None:
         """Set a Q parameter of the free range."""
@@ -177,5 +176,4 @@ class State:
             if np.isfinite(value) and not low - SAME <= value <= high + SAME:
                 scale = self.frame.coordinate(letter, 1.0) if letter not in "XYZ" else 1.0
                 expected = f"{low * scale:g} to {high * scale:g}, the travel of {letter}"
-                found = f"{letter} reading {value * scale:.4f}"
-                raise self.refusal(block, expected, found)
+                raise self.refusal(block, expected, f"{letter} reading {value * scale:.4f}")

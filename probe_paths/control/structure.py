@@ -40,21 +40,20 @@ def program_name(blocks: Sequence[Block], path: Path) -> str:
     """Name of the program, after its frame has been checked; raises BadFile."""
     first, last = blocks[0], blocks[-1]
     if first.kind is not Kind.BEGIN:
-        raise BadFile(path, f"line {first.line}", repr(first.text), "BEGIN PGM <name> MM")
+        raise BadFile(path, first.line, repr(first.text), "BEGIN PGM <name> MM")
     if last.kind is not Kind.END:
-        found = f"{last.text!r} as the last block"
-        raise BadFile(path, f"line {last.line}", found, "END PGM: cut off?")
+        raise BadFile(path, last.line, f"{last.text!r} as the last block", "END PGM: cut off?")
     for block in blocks[1:-1]:
         if block.kind in (Kind.BEGIN, Kind.END):
-            raise BadFile(path, f"line {block.line}", repr(block.text), "one frame per file")
+            raise BadFile(path, block.line, repr(block.text), "one frame per file")
     name = first.word("name")
     for block in (first, last):
         if block.word("unit") != "MM":
-            raise BadFile(path, f"line {block.line}", block.word("unit"), "MM")
+            raise BadFile(path, block.line, block.word("unit"), "MM")
         if block.word("name") != name:
-            raise BadFile(path, f"line {block.line}", block.word("name"), f"{name} as in BEGIN PGM")
+            raise BadFile(path, block.line, block.word("name"), f"{name} as in BEGIN PGM")
     if path.stem.upper() != name.upper():
-        raise BadFile(path, f"line {first.line}", f"program name {name}", f"{path.stem}")
+        raise BadFile(path, first.line, f"program name {name}", f"{path.stem}")
     return name
 
 
@@ -62,23 +61,22 @@ def labels(blocks: Sequence[Block], path: Path) -> dict[str, int]:
     """Block index of every label; raises BadFile."""
     kinds = [block.kind for block in blocks]
     if Kind.PROGRAM_STOP not in kinds:
-        raise BadFile(path, f"line {blocks[-1].line}", "no M30", "M30 at the end of the program")
+        raise BadFile(path, blocks[-1].line, "no M30", "M30 at the end of the program")
     labelled = [(i, b) for i, b in enumerate(blocks) if b.kind is Kind.LABEL]
     found = label_places(((i, b.line, b.word("label")) for i, b in labelled), path)
     stop = kinds.index(Kind.PROGRAM_STOP)
     inside = {name for name in found if Label.stands_inside(int(name))}
     for name, i in found.items():
         if i < stop and name not in inside:
-            where = f"line {blocks[i].line}"
-            raise BadFile(path, where, f"LBL {name}", "subprograms after M30")
+            raise BadFile(path, blocks[i].line, f"LBL {name}", "subprograms after M30")
     for block in blocks:
         if block.kind in (Kind.CALL, Kind.JUMP) and block.word("label") not in found:
             available = ", ".join(n for n in found if n not in inside) or "none"
             expected = f"a label that is defined; available: {available}"
-            raise BadFile(path, f"line {block.line}", f"LBL {block.word('label')}", expected)
+            raise BadFile(path, block.line, f"LBL {block.word('label')}", expected)
     asked = {b.word("label") for b in blocks if b.kind is Kind.JUMP}
     for name in sorted(inside - asked):
-        line, lost = f"line {blocks[found[name]].line}", f"LBL {name} that nothing goes to"
+        line, lost = blocks[found[name]].line, f"LBL {name} that nothing goes to"
         raise BadFile(path, line, lost, "a test of the visit to start at")
     return found
 
@@ -88,13 +86,13 @@ def check_cycles(blocks: Sequence[Block], path: Path) -> None:
     for before, block in pairwise(blocks):
         is_in_7 = before.kind in (Kind.SHIFT_NAME, Kind.SHIFT)
         if block.kind is Kind.SHIFT and not is_in_7 and language_of(path).has_masks:
-            raise BadFile(path, f"line {block.line}", repr(block.text), "CYCL DEF 7.0 before it")
+            raise BadFile(path, block.line, repr(block.text), "CYCL DEF 7.0 before it")
     expected = 0
     for block in blocks:
         place = _CYCLE.index(block.kind) if block.kind in _CYCLE else None
         if (place is None and expected) or (place is not None and place != expected):
             wanted = f"TCH PROBE 4.{expected} in its place"
-            raise BadFile(path, f"line {block.line}", repr(block.text), wanted)
+            raise BadFile(path, block.line, repr(block.text), wanted)
         expected = 0 if place is None else (place + 1) % len(_CYCLE)
 
 
@@ -111,7 +109,7 @@ def check_axes(blocks: Sequence[Block], letters: Sequence[str], head: Heading, p
     for letter, line in sorted(named.items(), key=lambda one: one[1]):
         if letter not in letters:
             expected = f"an axis of the machine: {of_machine}; {written}"
-            raise BadFile(path, f"line {line}", f"axis {letter}", expected)
+            raise BadFile(path, line, f"axis {letter}", expected)
     missing = [] if head.is_tilted else [a for a in letters if a not in named]
     if missing:
         found = f"no position of {' and '.join(missing)}"
@@ -134,7 +132,7 @@ def heading(blocks: Sequence[Block], path: Path) -> tuple[Heading, Mapping[int, 
         if match is None:
             continue
         if int(match[1]) in features:
-            raise BadFile(path, f"line {line}", repr(text), "every feature number once")
+            raise BadFile(path, line, repr(text), "every feature number once")
         features[int(match[1])] = match[2]
     return head, features
 
@@ -158,7 +156,7 @@ def promise(blocks: Sequence[Block], head: Heading, path: Path) -> Promise:
     planned_words = (("L", head.probe.tool_length), ("R", head.probe.radius))
     for (name, planned), stated in zip(planned_words, tool[1:], strict=True):
         if abs(float(stated) - planned) > _DIGITS:
-            raise BadFile(path, f"line {line}", f"{name}{stated}", f"{planned:+.4f} as PROBE says")
+            raise BadFile(path, line, f"{name}{stated}", f"{planned:+.4f} as PROBE says")
     return Promise(
         touches=made,
         tool=int(tool[0]),

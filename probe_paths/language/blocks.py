@@ -135,19 +135,19 @@ def read_klartext(data: bytes, path: str | Path, dialect: Dialect) -> list[Block
     blocks: list[Block] = []
     is_numbered: bool | None = None
     for line, number, text in klartext_blocks(physical_lines(data, path)):
-        folded, where = " ".join(text.split()), f"line {line}"
+        folded = " ".join(text.split())
         shown = f"{number} {folded}".lstrip()
         if shown.endswith("~"):
-            raise BadFile(path, where, repr(shown), "a further line after the tilde")
+            raise BadFile(path, line, repr(shown), "a further line after the tilde")
         if len(shown) > LONGEST_BLOCK:
             raise BadFile(
-                path, where, f"{len(shown)} characters in one block", f"at most {LONGEST_BLOCK}"
+                path, line, f"{len(shown)} characters in one block", f"at most {LONGEST_BLOCK}"
             )
         is_numbered = bool(number) if is_numbered is None else is_numbered
         if is_numbered != bool(number):
-            raise BadFile(path, where, repr(shown), "block numbers everywhere or nowhere")
+            raise BadFile(path, line, repr(shown), "block numbers everywhere or nowhere")
         if number and (number.lstrip("0") or "0") != str(len(blocks)):
-            raise BadFile(path, where, f"block number {number}", str(len(blocks)))
+            raise BadFile(path, line, f"block number {number}", str(len(blocks)))
         blocks.append(_parse(folded, line, path, dialect))
     return blocks
 
@@ -160,14 +160,13 @@ def physical_lines(data: bytes, path: str | Path) -> list[str]:
         text = data.decode("ascii")
     except UnicodeDecodeError as error:
         line = data[: error.start].count(b"\n") + 1
-        found = f"byte 0x{data[error.start]:02x}"
-        raise BadFile(path, f"line {line}", found, "ASCII") from None
+        raise BadFile(path, line, f"byte 0x{data[error.start]:02x}", "ASCII") from None
     if text.count("\r\n") not in (0, text.count("\n")) or text.replace("\r\n", "").count("\r"):
         raise BadFile(path, "file", "mixed line ends", "CRLF at the end of every line")
     lines = [line.rstrip() for line in text.splitlines()]
     if not text.endswith("\n") and "END PGM" not in lines[-1]:
         expected = "END PGM, or a whole line: the file is cut off"
-        raise BadFile(path, f"line {len(lines)}", repr(lines[-1]), expected)
+        raise BadFile(path, len(lines), repr(lines[-1]), expected)
     return lines
 
 
@@ -184,8 +183,8 @@ def _parse(text: str, line: int, path: str | Path, dialect: Dialect) -> Block:
             return Block(line, kind, match.groupdict(), text)
     for beginning, expected in _KNOWN_OTHERS:
         if re.match(beginning, bare):
-            raise BadFile(path, f"line {line}", repr(text), expected)
-    raise BadFile(path, f"line {line}", repr(text), _ANYTHING)
+            raise BadFile(path, line, repr(text), expected)
+    raise BadFile(path, line, repr(text), _ANYTHING)
 
 
 def _is_known(words: Mapping[str, str | None], dialect: Dialect) -> bool:

@@ -81,8 +81,7 @@ def read_gcode(data: bytes, path: str | Path) -> list[Block]:
     for number, line in enumerate(lines, 1):
         if len(line) > LONGEST_LINE:
             found = f"{len(line)} characters: {line[:40]!r}..."
-            expected = f"{LONGEST_LINE} at most, as LinuxCNC reads"
-            raise BadFile(path, f"line {number}", found, expected)
+            raise BadFile(path, number, found, f"{LONGEST_LINE} at most, as LinuxCNC reads")
     blocks = list(_Reader(lines, path).blocks())
     inside: list[Block] = []
     outside: list[Block] = []
@@ -94,7 +93,7 @@ def read_gcode(data: bytes, path: str | Path) -> list[Block]:
         ends = block.kind is Kind.LABEL and block.word("label") == "0"
         begins = block.kind is Kind.LABEL and not ends
         if begins == within and (begins or ends):
-            raise BadFile(path, f"line {block.line}", repr(block.text), "ENDSUB after every SUB")
+            raise BadFile(path, block.line, repr(block.text), "ENDSUB after every SUB")
         within = (within or begins) and not ends
         (inside if within or ends else outside).append(block)
     return [*outside[:-1], *inside, *outside[-1:]]
@@ -127,14 +126,14 @@ class _Reader:
     def _take(self, expected: str) -> str:
         """The next line; refuses the end of the file."""
         if self.i == len(self.lines):
-            raise BadFile(self.path, f"line {self.i}", "the end of the file after it", expected)
+            raise BadFile(self.path, self.i, "the end of the file after it", expected)
         self.i += 1
         return self.lines[self.i - 1]
 
     def _must(self, expected: str) -> None:
         found = self._take(expected)
         if found != expected:
-            raise BadFile(self.path, f"line {self.i}", repr(found), expected)
+            raise BadFile(self.path, self.i, repr(found), expected)
 
     def _test(self) -> Block:
         line, text = self.i + 1, self._take("")
@@ -142,7 +141,7 @@ class _Reader:
         assert match is not None
         called = _PATTERNS[Kind.CALL].match(self._take("O<number> CALL"))
         if called is None:
-            raise BadFile(self.path, f"line {self.i}", repr(self.lines[self.i - 1]), "O.. CALL")
+            raise BadFile(self.path, self.i, repr(self.lines[self.i - 1]), "O.. CALL")
         self._must(f"O{match[1]} ENDIF")
         words: Words = {**match.groupdict(), "label": called["label"]}
         return Block(line, Kind.JUMP, words, text)
@@ -152,7 +151,7 @@ class _Reader:
         self.i += 1
         number = int(match[1]) - SKIP
         if not Label.is_behind(number):
-            raise BadFile(self.path, f"line {self.i}", repr(text), "an IF or ENDIF of our programs")
+            raise BadFile(self.path, self.i, repr(text), "an IF or ENDIF of our programs")
         label: Words = {"label": str(number)}
         if not match.groupdict():
             return Block(self.i, Kind.LABEL, label, text)
@@ -164,7 +163,7 @@ class _Reader:
         line, text = self.i + 1, self._take("")
         target = _APPEND.match(text)
         if target is None:
-            raise BadFile(self.path, f"line {line}", repr(text), "(LOGAPPEND,<name>)")
+            raise BadFile(self.path, line, repr(text), "(LOGAPPEND,<name>)")
         lines: list[str] = []
         asked = ""
         while (found := self._take("(LOGCLOSE)")) != "(LOGCLOSE)":
@@ -179,13 +178,13 @@ class _Reader:
         """A line of the log in the form of a mask; `asked` is what the input now holds."""
         match = _LOG.match(text)
         if match is None or '"' in text or "%" in text:
-            raise BadFile(self.path, f"line {self.i}", repr(text), _EXPECTED[4][1])
+            raise BadFile(self.path, self.i, repr(text), _EXPECTED[4][1])
         arguments = []
         for number in _VALUE.findall(match[1]):
             own = {g.INPUT[1:]: asked, g.LENGTH[1:]: f"Q{TOOL_LENGTH}"}.get(number, f"Q{number}")
             if not own:
                 found = f"{text!r} before {g.WAIT} or {g.DATE}"
-                raise BadFile(self.path, f"line {self.i}", found, "the clock read in this log")
+                raise BadFile(self.path, self.i, found, "the clock read in this log")
             arguments.append(own)
         return f'"{_VALUE.sub("%1.6LF", match[1])}"' + "".join(f",{a}" for a in arguments) + ";"
 
@@ -195,7 +194,7 @@ class _Reader:
         line, touch = self.i, _TOUCH.match(text)
         if touch is not None:
             if not self.has_touch:
-                raise BadFile(self.path, f"line {line}", repr(text), f"O{g.TOUCH} SUB before it")
+                raise BadFile(self.path, line, repr(text), f"O{g.TOUCH} SUB before it")
             yield from _touch_blocks(line, text, touch)
             return
         for kind, pattern in _PATTERNS.items():
@@ -208,7 +207,7 @@ class _Reader:
                 yield from (Block(line, kind, one, text) for one in many)
                 return
         expected = next((e for begin, e in _EXPECTED if re.match(begin, text)), _ANYTHING)
-        raise BadFile(self.path, f"line {line}", repr(text), expected)
+        raise BadFile(self.path, line, repr(text), expected)
 
 
 def _touch_blocks(line: int, text: str, match: re.Match[str]) -> Iterator[Block]:

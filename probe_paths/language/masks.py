@@ -94,27 +94,26 @@ def parse_mask(text: str, path: str | Path) -> tuple[MaskLine, ...]:
     """
     lines = []
     for number, raw in enumerate(text.splitlines(), start=1):
-        where = f"line {number}"
         # keywords stand without quotes: M_CLOSE;
         if (word := raw.strip().removesuffix(";")) in KEYWORDS and raw.strip() != word:
             lines.append(MaskLine(word, ()))
             continue
         match = _LINE.match(raw.strip())
         if match is None:
-            raise BadFile(path, where, repr(raw), '"text",Q1620,HOUR; with quotes and semicolon')
+            raise BadFile(path, number, repr(raw), '"text",Q1620,HOUR; with quotes and semicolon')
         words = match["arguments"].split(",")[1:]
-        arguments = tuple(_argument(word, path, where) for word in words)
+        arguments = tuple(_argument(word, path, number) for word in words)
         formats, signs = _FORMAT.findall(match["text"]), match["text"].count("%")
         if not len(formats) == signs == len(arguments):
             found = f"{signs} formats for {len(arguments)} values"
-            raise BadFile(path, where, found, "one format such as %13.6LF or %3d for each value")
+            raise BadFile(path, number, found, "one format such as %13.6LF or %3d for each value")
         lines.append(MaskLine(match["text"], arguments))
     if not lines:
         raise BadFile(path, "file", "no line", "at least one line of text")
     return tuple(lines)
 
 
-def _argument(word: str, path: str | Path, where: str) -> int | str:
+def _argument(word: str, path: str | Path, where: int) -> int | str:
     if word in _CLOCK:
         return word
     if re.fullmatch(r"Q\d{1,4}", word):

@@ -221,7 +221,7 @@ def parse_heading(lines: Sequence[tuple[int, str]], path: str | Path) -> tuple[H
     Raises:
         BadFile: A line missing or spelt otherwise, a workshop that is not the one of its hash.
     """
-    where = f"line {lines[0][0]}" if lines else "head"
+    where = lines[0][0] if lines else "head"
     if len(lines) < 4:
         raise BadFile(path, where, "an incomplete head", "STANDARD, ORIGIN, TURNED, PROBE lines")
     words = lines[0][1].split()
@@ -272,7 +272,7 @@ def _stated_lines(
         elif match := _STATED.fullmatch(text.strip()):
             stated[match[1]] = match[2]
             if match[1] == "FRAME" and match[2] != _TILTED:
-                raise BadFile(path, f"line {number}", repr(text), f"FRAME {_TILTED}")
+                raise BadFile(path, number, repr(text), f"FRAME {_TILTED}")
         elif not _EARLIER.fullmatch(text.strip()):
             break
         count += 1
@@ -299,12 +299,12 @@ def _with_workshop(
         count += 2
     if not solids or solids[0].name != TABLE:
         found = repr(lines[count][1])
-        raise BadFile(path, f"line {lines[count][0]}", found, f"BODY {_TABLE_WORD} and others")
+        raise BadFile(path, lines[count][0], found, f"BODY {_TABLE_WORD} and others")
     whole = replace(head, probe=probe, workshop=Workshop(solids[0], tuple(solids[1:])))
     if whole.workshop_hash != head.stated:
         found = f"a probe and bodies of hash {whole.workshop_hash}"
         expected = f"WORKSHOP {head.stated or '<hash>'}, as stated: emit the program again"
-        raise BadFile(path, f"line {first}", found, expected)
+        raise BadFile(path, first, found, expected)
     return whole, count
 
 
@@ -312,9 +312,9 @@ def _solid(shape: tuple[int, str], place: tuple[int, str], path: str | Path) -> 
     """A body from its two lines."""
     found, at = _SOLID.fullmatch(shape[1].strip()), _PLACE.fullmatch(place[1].strip())
     if found is None:
-        raise BadFile(path, f"line {shape[0]}", repr(shape[1]), "BODY <name> BOX|DISC A B Z TO")
+        raise BadFile(path, shape[0], repr(shape[1]), "BODY <name> BOX|DISC A B Z TO")
     if at is None:
-        raise BadFile(path, f"line {place[0]}", repr(place[1]), "AT X.. Y.. C.. ON <axis>|TABLE")
+        raise BadFile(path, place[0], repr(place[1]), "AT X.. Y.. C.. ON <axis>|TABLE")
     a, b, low, high = (float(found[i]) for i in range(3, 7))
     return Solid(
         name=TABLE if found[1] == _TABLE_WORD else found[1],
@@ -334,5 +334,5 @@ def _numbers(
 ) -> Array:
     match = pattern.fullmatch(line[1].strip())
     if match is None:
-        raise BadFile(path, f"line {line[0]}", repr(line[1]), expected)
+        raise BadFile(path, line[0], repr(line[1]), expected)
     return np.array([float(v) for v in match.groups()])

@@ -66,7 +66,7 @@ class ScanPoints:
 
     def refuse(self, at: int, found: str, expected: str) -> BadFile:
         """A refusal that names the line of a point."""
-        return BadFile(self.path, f"line {self.row[at]}", found, expected)
+        return BadFile(self.path, self.row[at], found, expected)
 
 
 @dataclass(frozen=True)

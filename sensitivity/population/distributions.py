@@ -28,8 +28,7 @@ class Mix:
         if len(set(self.shapes)) < len(self.shapes):
             raise BadValue("shapes", list(self.shapes), "each once, with a weight")
         if not self.periods or min(self.periods) < 1 or len(set(self.periods)) < len(self.periods):
-            expected = "whole numbers from 1 up, each once"
-            raise BadValue("periods", list(self.periods), expected)
+            raise BadValue("periods", list(self.periods), "whole numbers from 1 up, each once")
         if self.weights and (
             len(self.weights) != len(self.shapes)
             or not all(0.0 <= w < float("inf") for w in self.weights)

@@ -215,8 +215,8 @@ def _split_head(text: str, path: str | Path) -> tuple[str, str, int]:
         found = f"{lines[n][:40]!r}" if n < len(lines) else "an empty file"
         if found.startswith("'MATSTD LOG"):
             expected = "a run file (matstd evaluate makes one of it)"
-            raise BadFile(path, f"line {n + 1}", "the log of a probing program", expected)
-        raise BadFile(path, f"line {n + 1}", found, _HEAD)
+            raise BadFile(path, n + 1, "the log of a probing program", expected)
+        raise BadFile(path, n + 1, found, _HEAD)
     return head, "\n".join(lines[n:]), n + 1
 
 
@@ -287,12 +287,8 @@ def _setups(table: CsvTable, head: HeadTable) -> tuple[tuple[Setup, ...], IntArr
     names = list(tables)
     if "setup" not in table:
         if len(names) > 1:
-            raise BadFile(
-                table.path,
-                f"line {table.header_line}",
-                "several set-ups in the head and no column setup",
-                "a column setup",
-            )
+            found = "several set-ups in the head and no column setup"
+            raise BadFile(table.path, table.header_line, found, "a column setup")
         return setups, np.zeros(len(table), dtype=np.int64)
     index = np.zeros(len(table), dtype=np.int64)
     for i, name in enumerate(table.text("setup")):

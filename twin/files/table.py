@@ -36,8 +36,7 @@ def _rows(table: io.BytesIO, path: str | Path, first: int) -> Iterator[tuple[int
             if any(row):
                 yield first + reader.line_num - 1, row
     except csv.Error as error:
-        line = f"line {first + reader.line_num - 1}"
-        found = f"a cell without an end ({error})"
+        line, found = first + reader.line_num - 1, f"a cell without an end ({error})"
         raise BadFile(path, line, found, "as many opening as closing quotes") from error
 
 
@@ -81,16 +80,15 @@ class CsvTable:
         table = io.BytesIO(self._data)
         head = next(_rows(table, path, first_line), None)
         if head is None:
-            raise BadFile(path, f"line {first_line}", "nothing", "a line of column names")
+            raise BadFile(path, first_line, "nothing", "a line of column names")
         self.header_line, header = head
         self.columns = [name.strip() for name in header]
         other = next((name for name, mark in _OTHERS.items() if mark in header[0]), None)
         if len(header) == 1 and other is not None:
-            where = f"line {self.header_line}"
-            raise BadFile(path, where, f"columns separated by {other}", _EXPECTED)
+            raise BadFile(path, self.header_line, f"columns separated by {other}", _EXPECTED)
         for name in self.columns:
             if self.columns.count(name) > 1:
-                raise BadFile(path, f"line {self.header_line}", f"column {name} twice", "it once")
+                raise BadFile(path, self.header_line, f"column {name} twice", "it once")
         self._values = _only_numbers(self._data, table.tell(), len(self.columns))
         self._count = len(self.rows if self._values is None else self._values)
 
@@ -100,7 +98,7 @@ class CsvTable:
         _, *rows = _rows(io.BytesIO(self._data), self.path, self._first_line)
         for line, row in rows:
             if len(row) != len(self.columns):
-                raise BadFile(self.path, f"line {line}", _cells(row, self.columns), _EXPECTED)
+                raise BadFile(self.path, line, _cells(row, self.columns), _EXPECTED)
         return rows
 
     @cached_property
@@ -125,25 +123,17 @@ class CsvTable:
         """Raise BadFile where columns are missing, all of them at once."""
         missing = [name for name in names if name not in self.columns]
         if missing:
-            expected = ", ".join(missing)
-            raise BadFile(
-                self.path,
-                f"line {self.header_line}",
-                f"no column {' and no '.join(missing)} among {', '.join(self.columns)}",
-                f"a column {expected}" if len(missing) == 1 else f"columns {expected}",
-            )
+            found = f"no column {' and no '.join(missing)} among {', '.join(self.columns)}"
+            expected = f"{'a column' if len(missing) == 1 else 'columns'} {', '.join(missing)}"
+            raise BadFile(self.path, self.header_line, found, expected)
 
     def allow_only(self, known: Sequence[str], pattern: str = "") -> None:
         """Raise BadFile for the first column that is not known."""
         for name in self.columns:
             if name not in known:
-                meant = did_you_mean(name, known)
-                raise BadFile(
-                    self.path,
-                    f"line {self.header_line}",
-                    f"column {name!r}{meant}",
-                    f"one of {', '.join(known)}{pattern}",
-                )
+                found = f"column {name!r}{did_you_mean(name, known)}"
+                expected = f"one of {', '.join(known)}{pattern}"
+                raise BadFile(self.path, self.header_line, found, expected)
 
     def text(self, name: str) -> list[str]:
         """Cells of a column."""

@@ -84,7 +84,7 @@ def read_text(path: str | Path) -> str:
         if b"\0" in data:
             raise BadFile(path, "file", "no text", "a text file (UTF-8)") from error
         found = f"byte {data[error.start]:#04x}, which is no UTF-8"
-        raise BadFile(path, f"line {line}", found, "text saved as UTF-8") from error
+        raise BadFile(path, line, found, "text saved as UTF-8") from error
 
 
 def read_any_text(path: str | Path) -> str:
@@ -133,7 +133,7 @@ def parse_toml(text: str, path: str | Path, twice: str = "it once") -> dict[str,
         literal = long.group() if long else str(error)
         line = 1 + text.count("\n", 0, max(text.find(literal), 0))
         expected = "a number of fewer digits" if long else f"numbers below {LARGEST_NUMBER:g}"
-        raise BadFile(path, f"line {line}", literal, expected) from None
+        raise BadFile(path, line, literal, expected) from None
 
 
 def _moderate(literal: str) -> float:

@@ -218,7 +218,7 @@ def load_user_effects(path: Path) -> tuple[Kind, ...]:
     try:
         spec.loader.exec_module(module)
     except SyntaxError as cause:
-        line = f"line {cause.lineno}" if cause.lineno else "file"
+        line = cause.lineno or "file"
         found = f"{(cause.text or '').strip()!r} ({cause.msg})" if cause.text else cause.msg
         expected = "Python saved as UTF-8" if "codec" in cause.msg else "Python"
         found = "a byte that is no UTF-8" if "codec" in cause.msg else found

@@ -106,8 +106,7 @@ def _try_attributes(effect: Effect, path: str | Path) -> None:
     missing = [attribute for attribute in _TUNABLE_HAS if attribute not in there]
     if there and missing:
         found = f"{' and '.join(there)} without {' and '.join(missing)}"
-        expected = "inner, tuned and tuning, or none of them"
-        raise _bad(effect, there[0], path, found, expected)
+        raise _bad(effect, there[0], path, found, "inner, tuned and tuning, or none of them")
 
 
 def _try_parameters(effect: Effect, path: str | Path) -> None:
@@ -205,8 +204,7 @@ def _try_place(effect: Effect, term: Term, touches: Touches, path: str | Path) -
         found = f"a term of parameter {term.parameter}"
         raise _bad(effect, "terms", path, found, f"0 to {count - 1}, for it has {count}")
     if part not in _PARTS:
-        expected = f"one of {', '.join(_PARTS)}"
-        raise _bad(effect, "terms", path, f"Where('{part}', ...)", expected)
+        raise _bad(effect, "terms", path, f"Where('{part}', ...)", f"one of {', '.join(_PARTS)}")
     if not _is_index(link, links):
         expected = f"0 to {links - 1}: touches.chain.link_index(axis)"
         raise _bad(effect, "terms", path, f"link {link}", expected)
