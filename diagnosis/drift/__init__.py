@@ -13,6 +13,7 @@ from matstd.diagnosis.drift.drift_file import write_drift as write_drift
 from matstd.diagnosis.drift.drift_file import write_prediction as write_prediction
 from matstd.diagnosis.drift.drift_law import drift_law_of as drift_law_of
 from matstd.diagnosis.drift.judged import Judged as Judged
+from matstd.diagnosis.drift.judged import JudgedLaws as JudgedLaws
 from matstd.diagnosis.drift.judged import chosen as chosen
 from matstd.diagnosis.drift.judged import judge as judge
 from matstd.diagnosis.drift.judged import offered as offered

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from matstd.diagnosis.drift.constant import Constant
-from matstd.diagnosis.drift.judged import Judged, Law
+from matstd.diagnosis.drift.judged import Judged, JudgedLaws, Law
 from matstd.diagnosis.drift.lags import Lagged
 from matstd.diagnosis.drift.linear import LinearLaw
 from matstd.diagnosis.drift.record import DriftRecord
@@ -26,14 +26,9 @@ SHOWN = {"mm": "um", "rad": "urad"}  # unit of a component in the file
 _LAWS: dict[str, type] = {"linear": LinearLaw, "constant": Constant}
 
 
-def write_drift(
-    path: str | Path,
-    record: DriftRecord,
-    judged: Sequence[Judged],
-    best: Judged,
-    said: Mapping[str, object],
-) -> None:
+def write_drift(path: str | Path, found: JudgedLaws, said: Mapping[str, object]) -> None:
     """Write what every law leaves, and the chosen law with all that a prediction needs."""
+    record, best = found.record, found.best
     names = [f"{c}_{SHOWN[u]}" for c, u in zip(record.components, record.units, strict=True)]
     data = {
         "format": FORMAT,
@@ -49,7 +44,7 @@ def write_drift(
                 if j.noisy is not None
                 else None,
             }
-            for j in judged
+            for j in found.judged
         ],
         "components": list(record.components),
         "units": list(record.units),

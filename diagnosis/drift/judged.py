@@ -12,7 +12,7 @@ from matstd.diagnosis.drift.linear import ridge
 from matstd.diagnosis.drift.record import DriftRecord, blocks, is_speed
 from matstd.twin.compute import Progress
 from matstd.twin.frames import Array, IntArray
-from matstd.twin.numbers import rms, rms_of_columns
+from matstd.twin.numbers import rms_of_columns
 
 BLOCKS = 4  # parts of the training hours that are left out in turn: each must hold a load cycle
 
@@ -50,14 +50,27 @@ class Judged:
     noisy: Array | None  # the same with noise on the temperatures; None where none was asked for
     factor: Array  # by which left-out blocks miss more than residual and leverage say
 
-    def total(self, values: Array, record: DriftRecord) -> float:
-        """Over all components, in micrometres or microradians."""
-        return rms(values / record.size)
-
     def u(self, record: DriftRecord) -> Array:
         """Standard uncertainty of the free run at every row, (N, K), base units."""
         spread = np.sqrt(1.0 + self.law.leverage(record))
         return self.factor * self.law.residual * spread[:, None]
+
+
+@dataclass(frozen=True, eq=False)
+class JudgedLaws:
+    """Laws of a drift beside one another."""
+
+    record: DriftRecord  # all logs as one
+    train: IntArray  # rows that the laws were learnt from
+    held: IntArray  # rows that were held out
+    judged: Sequence[Judged]  # every law with its errors
+    best: Judged  # the one that is chosen
+
+    @property
+    def hold(self) -> Array:
+        """What holding the last value leaves one step ahead, (K,)."""
+        step = self.record.displacement[self.held] - self.record.displacement[self.held - 1]
+        return rms_of_columns(step)
 
 
 def offered(record: DriftRecord) -> dict[str, Fits]:
@@ -94,7 +107,7 @@ def judge(
 
 def chosen(judged: Sequence[Judged], record: DriftRecord) -> Judged:
     """The law that predicts left-out blocks of the training part best."""
-    return min(judged, key=lambda j: j.total(j.left_out, record))
+    return min(judged, key=lambda j: record.together(j.left_out))
 
 
 def _judged(

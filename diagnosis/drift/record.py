@@ -7,6 +7,7 @@ import numpy as np
 
 from matstd.twin.errors import NotEnoughData
 from matstd.twin.frames import Array, IntArray
+from matstd.twin.numbers import rms
 from matstd.twin.units import UM, URAD
 
 SIZE = {"mm": UM, "rad": URAD}
@@ -37,6 +38,10 @@ class DriftRecord:
     def size(self) -> Array:
         """One micrometre or microradian of every component in base units, (K,)."""
         return np.array([SIZE[unit] for unit in self.units])
+
+    def together(self, values: Array) -> float:
+        """Root mean square of values (..., K) over all components, µm or µrad."""
+        return rms(values / self.size)
 
     @property
     def starts(self) -> IntArray:

@@ -10,6 +10,7 @@ from matstd.api.saved import REPORT_FILES
 from matstd.diagnosis.drift import (
     DriftRecord,
     Judged,
+    JudgedLaws,
     ProbedPrediction,
     check_alike,
     chosen,
@@ -53,7 +54,7 @@ MIN_ROWS = 40  # rows to learn from: ten for each of the blocks that are left ou
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class DriftLaws(Displayed):
+class DriftLaws(Displayed, JudgedLaws):
     """Laws of a thermal drift beside one another; `learn_drift` returns it.
 
     Example:
@@ -62,11 +63,6 @@ class DriftLaws(Displayed):
         True
     """
 
-    record: DriftRecord  # all logs as one
-    train: IntArray  # rows that the laws were learnt from
-    held: IntArray  # rows that were held out
-    judged: tuple[Judged, ...]  # every law with its errors
-    best: Judged  # the one that is chosen
     probings: tuple[str, ...]  # what probing the drift now and then would leave, as a sentence
     # names of the logs that were learnt from, and of those that were held out
     logs: tuple[tuple[str, ...], tuple[str, ...]]
@@ -74,15 +70,9 @@ class DriftLaws(Displayed):
     sensor_noise: float | None = None
 
     @property
-    def hold(self) -> Array:
-        """What holding the last value leaves one step ahead, (K,)."""
-        step = self.record.displacement[self.held] - self.record.displacement[self.held - 1]
-        return np.sqrt(np.mean(step**2, axis=0))
-
-    @property
     def lines(self) -> list[tuple[str, bool]]:
         """Every law in a sentence, and whether it is the chosen one."""
-        return list(drift_lines(self.record, self.judged, self.best, self.hold))
+        return list(drift_lines(self))
 
     def save(self, folder: str | Path, force: bool = False) -> None:
         """Write thermal.json, drift.csv and the page into a folder, whole or not at all."""
@@ -100,19 +90,9 @@ class DriftLaws(Displayed):
             "probing": list(self.probings),
             "remarks": list(record.remarks),
         }
-        write_drift(folder / "thermal.json", record, self.judged, best, facts)
+        write_drift(folder / "thermal.json", self, facts)
         write_prediction(folder / "drift.csv", record, best.law.predicted(record), best.u(record))
-        write_drift_page(
-            folder,
-            record,
-            self.judged,
-            best,
-            self.hold,
-            self.train,
-            self.held,
-            ", ".join(self.logs[0]),
-            self.probings,
-        )
+        write_drift_page(folder, self, ", ".join(self.logs[0]), self.probings)
 
 
 def learn_drift(

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
-from matstd.diagnosis.drift import DriftRecord, Judged
-from matstd.report.drift.drift_words import law_title, law_words, together, units_word
+from matstd.diagnosis.drift import DriftRecord, JudgedLaws
+from matstd.report.drift.drift_words import law_title, law_words, units_word
 from matstd.report.layout import KeyFigure, Page, Picture, Section, Table, write_page
 from matstd.report.numbers import digits, percent, sentence, span
 from matstd.report.style import BLUE, FAINT, INK, NEUTRAL, WASH, Figure, figure, plain, series
@@ -55,18 +55,19 @@ def draw_drift(
     return drawn
 
 
-def draw_laws(record: DriftRecord, judged: Sequence[Judged], best: Judged) -> Figure:
+def draw_laws(found: JudgedLaws) -> Figure:
     """One step, left out and held out of every law, as bars."""
+    judged = found.judged
     drawn = figure(1.2 + 0.45 * len(judged))
     ax = drawn.subplots()
     y = np.arange(len(judged))[::-1]
     for k, (label, name) in enumerate(
         (("one step ahead", "one_step"), ("left-out blocks", "left_out"), ("held out", "free_run"))
     ):
-        values = [together(getattr(j, name), record) for j in judged]
+        values = [found.record.together(getattr(j, name)) for j in judged]
         colour = (NEUTRAL, FAINT, series(0))[k]
         ax.barh(y + 0.27 - 0.27 * k, values, height=0.25, color=colour, label=label)
-    names = [law_title(j.name) + (" (chosen)" if j is best else "") for j in judged]
+    names = [law_title(j.name) + (" (chosen)" if j is found.best else "") for j in judged]
     ax.set_yticks(y, names)
     ax.set_xlabel("error in µm or µrad, rms over components")
     ax.legend(fontsize=8, frameon=False)
@@ -97,27 +98,15 @@ _FOOT = (
 
 
 def write_drift_page(
-    folder: str | Path,
-    record: DriftRecord,
-    judged: Sequence[Judged],
-    best: Judged,
-    hold: Array,
-    train: IntArray,
-    held: IntArray,
-    title: str,
-    probings: Sequence[str] = (),
+    folder: str | Path, found: JudgedLaws, title: str, probings: Sequence[str] = ()
 ) -> None:
-    """Write `report.html` and its pictures into a folder.
-
-    Args:
-        hold: Error one step ahead of holding the last value, (K,).
-        title: Names of the logs.
-    """
+    """Write `report.html` and its pictures into a folder; the title names the logs."""
+    record, best, held = found.record, found.best, found.held
     predicted, u = best.law.predicted(record), best.u(record)
     inside = np.abs((predicted - record.displacement) / u)[held] < 2.0
     unit, hours = units_word(record), record.step / HOUR
-    constant = next(together(j.free_run, record) for j in judged if j.name == "constant")
-    free_run = digits(together(best.free_run, record))
+    constant = next(record.together(j.free_run) for j in found.judged if j.name == "constant")
+    free_run = digits(record.together(best.free_run))
     drift = draw_drift(record, predicted, u, held)
     measured = "Measured drift, and the free run of the chosen law with ± 2 u."
     step_ahead = "A small error one step ahead is no evidence for a law."
@@ -132,12 +121,12 @@ def write_drift_page(
                 "held-out hours, free run: a constant; the chosen law",
             ),
             KeyFigure(
-                f"{digits(together(best.left_out, record))} {unit}",
+                f"{digits(record.together(best.left_out))} {unit}",
                 "the chosen law in blocks left out of its training",
             ),
             KeyFigure(percent(float(inside.mean())), "of the held-out readings within ± 2 u"),
             KeyFigure(
-                f"{digits(len(train) * hours)} h + {digits(len(held) * hours)} h",
+                f"{digits(len(found.train) * hours)} h + {digits(len(held) * hours)} h",
                 "training; held out",
             ),
         ],
@@ -148,10 +137,8 @@ def write_drift_page(
             Section(
                 "Comparison of the laws",
                 sentences=[_CHOICE.format(step=span(record.step))],
-                table=_laws(record, judged, best, hold),
-                pictures=[
-                    Picture("pictures/laws.png", step_ahead, draw_laws(record, judged, best))
-                ],
+                table=_laws(found),
+                pictures=[Picture("pictures/laws.png", step_ahead, draw_laws(found))],
             ),
             *_probed(probings),
         ],
@@ -162,16 +149,17 @@ def write_drift_page(
     write_page(Path(folder) / "report.html", page)
 
 
-def _laws(record: DriftRecord, judged: Sequence[Judged], best: Judged, hold: Array) -> Table:
+def _laws(found: JudgedLaws) -> Table:
     """Errors of every law over all components, and those of the held-out hours by component."""
+    record, judged = found.record, found.judged
     has_noise = any(j.noisy is not None for j in judged)
     noise = ["with noise"] if has_noise else []
     none = ["–"] * len(record.components)
-    first = digits(together(hold, record))
+    first = digits(record.together(found.hold))
     rows = [["last value held", first, "–", "–", *[""] * has_noise, *none]]
     for j in judged:
-        cells = [digits(together(v, record)) for v in (j.one_step, j.left_out, j.free_run)]
-        noisy = "" if j.noisy is None else digits(together(j.noisy, record))
+        cells = [digits(record.together(v)) for v in (j.one_step, j.left_out, j.free_run)]
+        noisy = "" if j.noisy is None else digits(record.together(j.noisy))
         each = [digits(v) for v in j.free_run / record.size]
         rows.append([law_title(j.name), *cells, *[noisy] * has_noise, *each])
     columns = ("law", "one step", "left out", "held out", *noise, *record.components)
@@ -179,7 +167,7 @@ def _laws(record: DriftRecord, judged: Sequence[Judged], best: Judged, hold: Arr
         f"Root mean square error, {units_word(record)}: over all components; then the held-out "
         "hours by component"
     )
-    chosen = [1 + k for k, j in enumerate(judged) if j is best]
+    chosen = [1 + k for k, j in enumerate(judged) if j is found.best]
     return Table(columns, rows, caption, chosen)
 
 

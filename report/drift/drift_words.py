@@ -1,13 +1,10 @@
 """Laws of a thermal drift and their errors, in sentences."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
-import numpy as np
-
-from matstd.diagnosis.drift import DriftRecord, Judged, ProbedPrediction
+from matstd.diagnosis.drift import DriftRecord, Judged, JudgedLaws, ProbedPrediction
 from matstd.report.numbers import digits, span
-from matstd.twin.frames import Array, IntArray
-from matstd.twin.numbers import rms
+from matstd.twin.frames import IntArray
 from matstd.twin.units import MINUTE
 
 _TITLES = {
@@ -29,30 +26,20 @@ def units_word(record: DriftRecord) -> str:
     return " and ".join("µm" if u == "mm" else "µrad" for u in dict.fromkeys(record.units))
 
 
-def together(values: Array, record: DriftRecord) -> float:
-    """Root mean square over components, µm or µrad."""
-    return rms(values / record.size)
-
-
-def drift_lines(
-    record: DriftRecord, judged: Sequence[Judged], best: Judged, hold: Array
-) -> Iterator[tuple[str, bool]]:
-    """The table of laws and the choice, line by line, and whether a line is the chosen one.
-
-    Args:
-        hold: Error one step ahead of holding the last value, (K,).
-    """
+def drift_lines(found: JudgedLaws) -> Iterator[tuple[str, bool]]:
+    """The table of laws and the choice, line by line, and whether a line is the chosen one."""
+    record, judged, best = found.record, found.judged, found.best
     has_noise = any(j.noisy is not None for j in judged)
     head = f"{'rms over ' + str(len(record.components)) + ' components, ' + units_word(record):<42}"
     head += f"{'one step':>10}{'left out':>10}{'held out':>10}"
     yield head + (f"{'with noise':>12}" if has_noise else ""), False
-    step = digits(together(hold, record))
+    step = digits(record.together(found.hold))
     yield f"{law_title('hold'):<42}{step:>10}{'–':>10}{'–':>10}", False
     for j in judged:
-        cells = [digits(together(v, record)) for v in (j.one_step, j.left_out, j.free_run)]
+        cells = [digits(record.together(v)) for v in (j.one_step, j.left_out, j.free_run)]
         line = f"{law_title(j.name):<42}" + "".join(f"{c:>10}" for c in cells)
         if j.noisy is not None:
-            line += f"{digits(together(j.noisy, record)):>12}"
+            line += f"{digits(record.together(j.noisy)):>12}"
         yield line, j is best
     yield f"chosen by the blocks left out: {law_title(best.name)}; {law_words(best, record)}", True
 
@@ -60,7 +47,7 @@ def drift_lines(
 def law_words(judged: Judged, record: DriftRecord) -> str:
     """Uncertainty of a law, and its terms."""
     u = judged.u(record)
-    return f"u {digits(together(np.sqrt(np.mean(u**2, axis=0)), record), 2)} {units_word(record)}"
+    return f"u {digits(record.together(u), 2)} {units_word(record)}"
 
 
 def clock_line(lead: float) -> str:
@@ -74,7 +61,7 @@ def clock_line(lead: float) -> str:
 def kept_line(result: ProbedPrediction, record: DriftRecord, rows: IntArray, every: float) -> str:
     """Error with probings `every` so often (s), with a law and without."""
     left, plain = (
-        together(np.sqrt(np.mean((v - record.displacement)[rows] ** 2, axis=0)), record)
+        record.together((v - record.displacement)[rows])
         for v in (result.predicted, result.offset_only)
     )
     every_words = f"{every / MINUTE:.0f} min" if every < 120 * MINUTE else span(every)

@@ -12,7 +12,7 @@ from matstd.cli import main
 from matstd.compensation.field import MachineErrors, State, deviation
 from matstd.compensation.service import OutputLimits, Service
 from matstd.compensation.service.output import Quality
-from matstd.diagnosis.drift import DriftRecord, Judged, write_drift
+from matstd.diagnosis.drift import DriftRecord, Judged, JudgedLaws, write_drift
 from matstd.diagnosis.drift.lags import Lagged
 from matstd.diagnosis.drift.linear import LinearLaw
 from matstd.effect_kinds import DRIFT_LAW
@@ -63,7 +63,9 @@ def thermal_json(tmp_path_factory):
         displacement=np.zeros((3, 2)),
     )
     path = tmp_path_factory.mktemp("law") / "thermal.json"
-    write_drift(path, record, [judged], judged, {})
+    rows = np.arange(3)
+    found = JudgedLaws(record=record, train=rows, held=rows, judged=[judged], best=judged)
+    write_drift(path, found, {})
     return path
 
 
