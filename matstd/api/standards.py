@@ -1,6 +1,6 @@
 """Standards: read, calibrated, drawn behind their touches; what visits to one say of a task."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -25,11 +25,10 @@ from matstd.artefact.worth import Calibration as KnownPlaces
 from matstd.cad_out.details import CALIBRATED
 from matstd.diagnosis.files import SavedModel, check_machine, read_model, write_uncertainty
 from matstd.diagnosis.fit import Prior
-from matstd.diagnosis.task import TaskUncertainty, Visits
 from matstd.effect_kinds import register_effects
 from matstd.report.machine import drawing_triangles, standard_bodies, thinned
-from matstd.report.pages import write_uncertainty_page
-from matstd.report.task import measured_sentence, refusal_sentence, task_lines
+from matstd.report.pages import Budgets, write_uncertainty_page
+from matstd.report.task import refusal_sentence
 from matstd.report.words import remark_sentence
 from matstd.stages import cmm
 from matstd.stages.budgets import UNCORRECTED, budgets
@@ -195,7 +194,7 @@ def as_designed(standard: Standard | str | Path) -> Standard:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class TaskBudget(Displayed):
+class TaskBudget(Budgets):
     """Uncertainty of a measuring task; `uncertainty` returns it.
 
     Example:
@@ -204,40 +203,13 @@ class TaskBudget(Displayed):
         '25 places on 4 faces at 4 table poses in 2 visits'
     """
 
-    task: Task  # what is measured
-    standard: Standard  # what was measured
-    # budgets by what results are corrected with, `as measured` first
-    found: Mapping[str, TaskUncertainty]
-    visits: Visits  # what the visits found
-    runs: tuple[tuple[str, int], ...]  # names of the visits with their numbers of touches
-    remarks: tuple[str, ...]  # on the runs and the model
-
-    @property
-    def sentence(self) -> str:
-        """How much was measured."""
-        return measured_sentence(next(iter(self.found.values())))
-
-    @property
-    def lines(self) -> list[str]:
-        """Sentences on the budgets."""
-        return task_lines(self.found, self.task.tolerance, self.visits)
-
     def save(self, path: str | Path) -> None:
         """Write the budgets as JSON, whole or not at all."""
         write_uncertainty(path, self.task.name, self.found, self.task.tolerance)
 
     def page(self, path: str | Path) -> None:
         """Write an HTML page, with its tables beside it."""
-        write_uncertainty_page(
-            path,
-            self.task.name,
-            self.standard.name,
-            self.sentence,
-            self.found,
-            self.lines,
-            self.runs,
-            self.remarks,
-        )
+        write_uncertainty_page(path, self)
 
 
 def uncertainty(

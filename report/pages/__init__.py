@@ -16,4 +16,5 @@ from matstd.report.pages.notebook import drawing as drawing
 from matstd.report.pages.setup_page import write_setup_page as write_setup_page
 from matstd.report.pages.study_page import write_study_page as write_study_page
 from matstd.report.pages.time_section import machine_times as machine_times
+from matstd.report.pages.uncertainty_page import Budgets as Budgets
 from matstd.report.pages.uncertainty_page import write_uncertainty_page as write_uncertainty_page

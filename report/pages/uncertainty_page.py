@@ -1,14 +1,17 @@
 """The page of `matstd uncertainty`: budget, results by face, visits."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 
-from matstd.diagnosis.task import TaskUncertainty
+from matstd.artefact.body import Standard
+from matstd.artefact.brief import Task
+from matstd.diagnosis.task import TaskUncertainty, Visits
 from matstd.report.layout import KeyFigure, Page, Section, Table, write_page
-from matstd.report.numbers import plural, um
-from matstd.report.numbers import sentence as as_sentence
-from matstd.report.task import FEW_VISITS, budget_rows
+from matstd.report.numbers import plural, sentence, um
+from matstd.report.task import FEW_VISITS, budget_rows, measured_sentence, task_lines
 from matstd.report.verdict import uncertainty_meaning
+from matstd.twin.display import Displayed
 from matstd.twin.units import UM
 
 _MEASURAND = (
@@ -35,41 +38,48 @@ def budget_table(budgets: Mapping[str, TaskUncertainty]) -> Table:
     return Table(columns, budget_rows(budgets), caption)
 
 
-def write_uncertainty_page(
-    path: str | Path,
-    task: str,
-    standard: str,
-    sentence: str,
-    found: Mapping[str, TaskUncertainty],
-    lines: Sequence[str],
-    runs: Sequence[tuple[str, int]],
-    remarks: Sequence[str],
-) -> None:
-    """Write the page, and its tables beside it.
+@dataclass(frozen=True, eq=False, repr=False)
+class Budgets(Displayed):
+    """Budgets of a measuring task, and the visits that they rest upon."""
 
-    Args:
-        sentence: How much was measured.
-        found: Budgets by what results are corrected with.
-        lines: Sentences on them.
-        runs: Name and number of touches of every visit.
-        remarks: On the runs and the model.
-    """
+    task: Task  # what is measured
+    standard: Standard  # what was measured
+    # budgets by what results are corrected with, `as measured` first
+    found: Mapping[str, TaskUncertainty]
+    visits: Visits  # what the visits found
+    runs: tuple[tuple[str, int], ...]  # names of the visits with their numbers of touches
+    remarks: tuple[str, ...]  # on the runs and the model
+
+    @property
+    def sentence(self) -> str:
+        """How much was measured."""
+        return measured_sentence(next(iter(self.found.values())))
+
+    @property
+    def lines(self) -> list[str]:
+        """Sentences on the budgets."""
+        return task_lines(self.found, self.task.tolerance, self.visits)
+
+
+def write_uncertainty_page(path: str | Path, made: Budgets) -> None:
+    """Write the page, and its tables beside it."""
+    found = made.found
     by_face = [_by_face(name, budget) for name, budget in found.items()]
-    visits = Table(("run", "touches"), [[f"`{name}`", str(n)] for name, n in runs])
+    visits = Table(("run", "touches"), [[f"`{name}`", str(n)] for name, n in made.runs])
     page = Page(
-        heading=f"Uncertainty of {task}",
-        lead=sentence,
+        heading=f"Uncertainty of {made.task.name}",
+        lead=made.sentence,
         means=uncertainty_meaning(found),
         next="Compare U with the tolerance: a fifth of it or less is usual. To lower U, correct "
         "results with a model (`--model`), measure more visits, or another place of the machine.",
         key=_key(found),
         sections=[
-            Section(sentences=[_MEASURAND.format(standard=standard)]),
+            Section(sentences=[_MEASURAND.format(standard=made.standard.name)]),
             Section("Budget", table=budget_table(found)),
-            Section(sentences=[as_sentence(line) for line in lines], notes=[_TERMS]),
+            Section(sentences=[sentence(line) for line in made.lines], notes=[_TERMS]),
             Section("Results by face"),
             *by_face,
-            Section("Visits", table=visits, notes=[as_sentence(line) for line in remarks]),
+            Section("Visits", table=visits, notes=[sentence(line) for line in made.remarks]),
         ],
     )
     write_page(Path(path), page)
