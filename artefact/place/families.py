@@ -2,19 +2,13 @@
 
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from matstd.artefact.body import Standard, check
-from matstd.artefact.brief import Brief, PlacementOptions
-from matstd.artefact.compare import Rival
-from matstd.artefact.hidden import hidden_power, possible_places
+from matstd.artefact.hidden import hidden_power
 from matstd.artefact.hidden import touched as single
-from matstd.artefact.place.body_choice import BodyChoice
 from matstd.artefact.place.family import Family, FamilyFigures, chosen_family, flat_pads
 from matstd.artefact.place.identifying import (
-    Base,
     Identifying,
-    ball_bases,
+    Site,
     identifying_choices,
     left_unknown,
     with_proof,
@@ -31,8 +25,6 @@ from matstd.artefact.place.wavy_proof import (
 )
 from matstd.artefact.price import prices_of
 from matstd.artefact.reach import Requests, joined, spread_poses
-from matstd.artefact.worth import BallPlaces, Criterion
-from matstd.twin.compute import Progress
 from matstd.twin.errors import NotBuildable, NotReachable
 from matstd.twin.frames import Array
 from matstd.twin.numbers import rms
@@ -56,57 +48,6 @@ class Built:
     def requests(self) -> Requests:
         """The touches that identify."""
         return self.found.tried[self.found.chosen]
-
-
-@dataclass(frozen=True, eq=False)
-class Site:
-    """What all families of one design share: candidates, criterion, rivals."""
-
-    brief: Brief
-    criterion: Criterion
-    places: BallPlaces
-    bodies: BodyChoice | None  # candidate small faces; None where none is wanted or none fits
-    rivals: tuple[Rival, ...]
-    bases: list[Base]
-    all_poses: Array  # candidate table poses, (K, R), rad
-    effects_at: Array  # where bumps may be, readings of the linear axes, (K, 3), mm
-    progress: Progress
-
-    @property
-    def options(self) -> PlacementOptions:
-        """Wishes of the project."""
-        return self.brief.options
-
-    @property
-    def best_balls(self) -> float:
-        """Error over the workspace that the best balls alone leave, mm; infinite without any."""
-        alone = [r.rms_user for r in self.rivals if r.body is not None and not r.body.patches]
-        return min(alone, default=np.inf)
-
-
-def site_of(
-    brief: Brief,
-    criterion: Criterion,
-    places: BallPlaces,
-    bodies: BodyChoice | None,
-    rivals: tuple[Rival, ...],
-    all_poses: Array,
-    progress: Progress,
-) -> Site:
-    """What the families share."""
-    bases = ball_bases(criterion.plain, rivals, places, all_poses, brief.options)
-    at = possible_places(brief.reach, criterion.volume, all_poses, np.random.default_rng(0))
-    return Site(
-        brief=brief,
-        criterion=criterion,
-        places=places,
-        bodies=bodies,
-        rivals=rivals,
-        bases=bases,
-        all_poses=all_poses,
-        effects_at=at,
-        progress=progress,
-    )
 
 
 def built_family(site: Site) -> tuple[Built, tuple[FamilyFigures, ...]]:
@@ -154,19 +95,7 @@ def _built(site: Site, family: Family, like: Built | None = None) -> Built:
 def _showing(site: Site, family: Family) -> Built:
     """Balls alone, or round one wavy face: touched where that shows most."""
     criterion, options, count = site.criterion, site.options, site.options.choice.proof
-    if family is Family.WAVY:
-        found = wavy_choice(
-            criterion,
-            site.places,
-            site.bases[0],
-            site.all_poses,
-            options,
-            site.effects_at,
-            site.best_balls,
-            np.random.default_rng(site.brief.seed),
-        )
-    else:
-        found = balls_alone(criterion, site.places, site.bases, options)
+    found = wavy_choice(site) if family is Family.WAVY else balls_alone(site)
     body, poses = found.standard, found.poses
     here = criterion.plain.on(body)
     given = single(found.tried[found.chosen], criterion.noise)
@@ -193,9 +122,7 @@ def _with_faces(site: Site) -> tuple[Identifying, Requests]:
     options, bodies = site.options, site.bodies
     if bodies is None:
         raise NotBuildable(f"{options.patches} small faces do not fit")
-    found = identifying_choices(
-        site.criterion, bodies, site.bases, site.places, site.all_poses, options, site.progress
-    )
+    found = identifying_choices(site, bodies)
     return with_proof(found, site.criterion.reach, options.choice.proof)
 
 

@@ -6,12 +6,14 @@ more than 1 % of the criterion. Finally balls and table poses are chosen anew be
 
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
 from matstd.artefact.body import DatumSphere, Standard
-from matstd.artefact.brief import PlacementOptions
+from matstd.artefact.brief import Brief, PlacementOptions
 from matstd.artefact.compare import Rival
+from matstd.artefact.hidden import possible_places
 from matstd.artefact.layout import with_spheres
 from matstd.artefact.place.body_choice import BodyChoice, balls_beside
 from matstd.artefact.place.proving import touches_on_faces
@@ -70,17 +72,47 @@ class Identifying:
         return replace(self, chosen=chosen, nearness=nearness)
 
 
-def ball_bases(
-    criterion: Criterion,
-    rivals: tuple[Rival, ...],
-    places: BallPlaces,
-    all_poses: Array,
-    options: PlacementOptions,
-) -> list[Base]:
+@dataclass(frozen=True, eq=False)
+class Site:
+    """What all families of one design share: candidates, criterion, rivals."""
+
+    brief: Brief
+    criterion: Criterion
+    places: BallPlaces
+    bodies: BodyChoice | None  # candidate small faces; None where none is wanted or none fits
+    rivals: tuple[Rival, ...]
+    all_poses: Array  # candidate table poses, (K, R), rad
+    progress: Progress
+
+    @property
+    def options(self) -> PlacementOptions:
+        """Wishes of the project."""
+        return self.brief.options
+
+    @cached_property
+    def bases(self) -> list[Base]:
+        """Balls to build on, the best first."""
+        return _ball_bases(self)
+
+    @cached_property
+    def effects_at(self) -> Array:
+        """Where bumps may be, readings of the linear axes, (K, 3), mm."""
+        rng, volume = np.random.default_rng(0), self.criterion.volume
+        return possible_places(self.brief.reach, volume, self.all_poses, rng)
+
+    @property
+    def best_balls(self) -> float:
+        """Error over the workspace that the best balls alone leave, mm; infinite without any."""
+        alone = [r.rms_user for r in self.rivals if r.body is not None and not r.body.patches]
+        return min(alone, default=np.inf)
+
+
+def _ball_bases(site: Site) -> list[Base]:
     """Balls of the rivals, the best first, or as many balls as fit."""
+    criterion, places, options = site.criterion.plain, site.places, site.options
     of_balls = [
         r
-        for r in rivals
+        for r in site.rivals
         if r.body is not None and not r.body.patches and len(r.body.spheres) <= options.balls
     ]
     if of_balls:
@@ -91,22 +123,14 @@ def ball_bases(
         ]
     balls = places.best(options.balls, options.choice.touches)
     body = with_spheres(places.blank, [b.centre for b in balls])
-    poses = chosen_poses(criterion.on(body), body, body.spheres, all_poses, options.choice)
+    poses = chosen_poses(criterion.on(body), body, body.spheres, site.all_poses, options.choice)
     tried = touches_to_choose_from(
         criterion.reach, body, body.spheres, poses, options.choice.touches
     )
     return [Base(body.spheres, tried, 0.0)]
 
 
-def identifying_choices(
-    criterion: Criterion,
-    bodies: BodyChoice,
-    bases: list[Base],
-    places: BallPlaces,
-    all_poses: Array,
-    options: PlacementOptions,
-    progress: Progress,
-) -> list[Identifying]:
+def identifying_choices(site: Site, bodies: BodyChoice) -> list[Identifying]:
     """Balls with the faces that cost least of some draws, and their touches; the best first.
 
     The cost of faces is first estimated from the touches on the balls alone that remain possible,
@@ -114,47 +138,40 @@ def identifying_choices(
     balls and table poses are also chosen anew beside the same faces, unless the faces cost a
     negligible part of the value of the balls alone.
     """
-    drawn, choice = _best_draw(criterion, bodies, bases, options, progress), options.choice
-    progress("faces", _MAX_REDRAWS + 1, _MAX_REDRAWS + 2)
-    first = drawn.searched(criterion, choice)
-    if first.value <= _NEGLIGIBLE_COST * bases[0].value:
+    drawn = _best_draw(site, bodies)
+    site.progress("faces", _MAX_REDRAWS + 1, _MAX_REDRAWS + 2)
+    first = drawn.searched(site.criterion, site.options.choice)
+    if first.value <= _NEGLIGIBLE_COST * site.bases[0].value:
         return [first]
-    other = _with_moved_balls(criterion, places, drawn.standard, all_poses, choice)
+    other = _with_moved_balls(site, drawn.standard)
     if other is None or other.value >= first.value:
         return [first]
     return [other, first]
 
 
-def _best_draw(
-    criterion: Criterion,
-    bodies: BodyChoice,
-    bases: list[Base],
-    options: PlacementOptions,
-    progress: Progress,
-) -> Identifying:
+def _best_draw(site: Site, bodies: BodyChoice) -> Identifying:
     """The best of a few draws; a single one where it costs little or nothing compares."""
-    progress("faces", 0, _MAX_REDRAWS + 2)
-    best, alone = _draw(criterion, bodies, bases, options), bases[0].value
+    site.progress("faces", 0, _MAX_REDRAWS + 2)
+    best, alone = _draw(site, bodies), site.bases[0].value
     for k in range(_MAX_REDRAWS if alone else 0):
-        progress("faces", k + 1, _MAX_REDRAWS + 2)
+        site.progress("faces", k + 1, _MAX_REDRAWS + 2)
         if best.value <= _GOOD_ENOUGH * alone:
             break
         with suppress(NotBuildable, NotReachable):  # the first draw stays
-            again = _draw(criterion, bodies, bases, options)
+            again = _draw(site, bodies)
             best = min(best, again, key=lambda draw: draw.value)
     return best
 
 
-def _draw(
-    criterion: Criterion, bodies: BodyChoice, bases: list[Base], options: PlacementOptions
-) -> Identifying:
+def _draw(site: Site, bodies: BodyChoice) -> Identifying:
     """The best balls that leave room for the faces, and the touches that remain on them.
 
     The next base is tried only where some balls had to be dropped.
     """
     best: Identifying | None = None
-    choice, refused = options.choice, NotReachable("no ball")
-    for base in bases[:_MAX_BASES]:
+    options, criterion, refused = site.options, site.criterion, NotReachable("no ball")
+    choice = options.choice
+    for base in site.bases[:_MAX_BASES]:
         poses = np.unique(base.touches.rotary, axis=0)
         standard = bodies.standard(
             options.name, options.serial, base.balls, base.touches, options.patches, choice.proof
@@ -177,34 +194,28 @@ def _draw(
     return best
 
 
-def _with_moved_balls(
-    criterion: Criterion,
-    places: BallPlaces,
-    standard: Standard,
-    all_poses: Array,
-    choice: TouchOptions,
-) -> Identifying | None:
+def _with_moved_balls(site: Site, standard: Standard) -> Identifying | None:
     """The same faces with balls and table poses chosen anew; None where a limit is violated.
 
     The faces were placed to hide few touches on the balls; now the balls move to where fewest of
     theirs are hidden.
     """
-    again = balls_beside(standard.patches, len(standard.spheres), places, choice.touches)
+    touches = site.options.choice.touches
+    again = balls_beside(standard.patches, len(standard.spheres), site.places, touches)
     if again is None:
         return None
     standard = replace(again, name=standard.name, serial=standard.serial)
     try:
-        return identifying_on(criterion, standard, all_poses, choice)
+        return identifying_on(site, standard)
     except NotReachable:
         return None
 
 
-def identifying_on(
-    criterion: Criterion, standard: Standard, all_poses: Array, choice: TouchOptions
-) -> Identifying:
+def identifying_on(site: Site, standard: Standard) -> Identifying:
     """Table poses and touches on the balls of a standard."""
     bare, balls = replace(standard, patches=()), standard.spheres
-    poses = chosen_poses(criterion.plain.on(bare), standard, balls, all_poses, choice)
+    criterion, choice = site.criterion, site.options.choice
+    poses = chosen_poses(criterion.plain.on(bare), standard, balls, site.all_poses, choice)
     tried = touches_to_choose_from(criterion.reach, standard, balls, poses, choice.touches)
     chosen, nearness = chosen_touches_on(criterion.on(bare), tried, choice)
     return Identifying(

@@ -29,8 +29,9 @@ from matstd.artefact.compare import (
 )
 from matstd.artefact.feasibility import check_blank
 from matstd.artefact.place.body_choice import BodyChoice, body_choice
-from matstd.artefact.place.families import Built, built_family, site_of
+from matstd.artefact.place.families import Built, built_family
 from matstd.artefact.place.family import Family, FamilyFigures
+from matstd.artefact.place.identifying import Site
 from matstd.artefact.place.proving import informative_touches
 from matstd.artefact.reach import Requests, joined
 from matstd.artefact.worth import (
@@ -115,17 +116,7 @@ def design_standard(
     reach, blank, options = brief.reach, brief.blank, brief.options
     choice = options.choice
     check_blank(blank.base, reach)
-    criterion = criterion_for(
-        reach,
-        brief.population.expected("w"),
-        blank,
-        brief.workspace,
-        options.noise,
-        rng,
-        options.criterion,
-        choice.touches,
-        brief.population,
-    )
+    criterion = _criterion_of(brief, rng)
     all_poses = poses_within(reach.chain, brief.rotary, choice.poses) if poses is None else poses
     places = ball_places(criterion.plain, blank, all_poses, rng)
     bodies = _small_faces(brief, places, all_poses, rng)
@@ -133,7 +124,15 @@ def design_standard(
     library = _visible_effects(criterion, max(choice.touches, _MIN_FREE_TOUCHES), rng)
     choices = criterion, places, all_poses, blank, choice, library, rng, options.balls
     with compared(*choices) as others:
-        site = site_of(brief, criterion, places, bodies, others.of_balls, all_poses, progress)
+        site = Site(
+            brief=brief,
+            criterion=criterion,
+            places=places,
+            bodies=bodies,
+            rivals=others.of_balls,
+            all_poses=all_poses,
+            progress=progress,
+        )
         built, families = built_family(site)
         requests, proof, tried = built.requests, built.proof, built.found.tried
         here = criterion.on(replace(built.standard, patches=()))
@@ -162,6 +161,22 @@ def design_standard(
         families=families,
         goal=options.goal,
         unreachable=others.unreachable,
+    )
+
+
+def _criterion_of(brief: Brief, rng: np.random.Generator) -> Criterion:
+    """What touches are chosen for, on no body."""
+    options = brief.options
+    return criterion_for(
+        brief.reach,
+        brief.population.expected("w"),
+        brief.blank,
+        brief.workspace,
+        options.noise,
+        rng,
+        options.criterion,
+        options.choice.touches,
+        brief.population,
     )
 
 

@@ -14,7 +14,7 @@ from matstd.artefact.body import DatumSphere, Standard, check
 from matstd.artefact.brief import PlacementOptions
 from matstd.artefact.layout import Blank, balls_fit, holes_on
 from matstd.artefact.place.body_choice import assembled
-from matstd.artefact.place.identifying import Base, Identifying
+from matstd.artefact.place.identifying import Base, Identifying, Site
 from matstd.artefact.reach import Requests
 from matstd.artefact.worth import BallPlaces, Criterion, repaired_touches, touches_to_choose_from
 from matstd.twin.errors import NotBuildable, NotReachable
@@ -24,9 +24,7 @@ _MOST_COST = 1.02  # of a mean variance: 1 % of an error
 CANDIDATES_PER_TOUCH = 4  # touches on the balls that prove from which each is chosen
 
 
-def balls_alone(
-    criterion: Criterion, places: BallPlaces, bases: Sequence[Base], options: PlacementOptions
-) -> Identifying:
+def balls_alone(site: Site) -> Identifying:
     """The best balls with as many that prove as faces are wanted, or fit, or hide few touches.
 
     The largest number is taken that costs the criterion no more than `_MOST_COST` by a quick
@@ -36,17 +34,17 @@ def balls_alone(
         NotBuildable: No ball that proves fits beside those that identify.
     """
     refused: list[str] = []
-    for base in bases:
-        beside = _most_apart(base.balls, places, options.patches)
+    for base in site.bases:
+        beside = _most_apart(base.balls, site.places, site.options.patches)
         for count in range(len(beside), 0, -1):
             try:
-                made = _standing([*base.balls, *beside[:count]], places.blank, options)
-                found = _quick_choice(criterion, made, base, options)
+                made = _standing([*base.balls, *beside[:count]], site.places.blank, site.options)
+                found = _quick_choice(site, made, base)
             except (NotBuildable, NotReachable) as error:
                 refused.append(str(error))
                 continue
             if count == 1 or not base.value or found.value <= _MOST_COST * base.value:
-                return found.searched(criterion, options.choice)
+                return found.searched(site.criterion, site.options.choice)
     why = refused[-1] if refused else "no place is left"
     raise NotBuildable(f"no balls that prove beside those that identify: {why}")
 
@@ -93,12 +91,11 @@ def _most_apart(balls: Sequence[DatumSphere], places: BallPlaces, count: int) ->
     return [replace(there[k], proves=True) for k in chosen[len(balls) :]]
 
 
-def _quick_choice(
-    criterion: Criterion, made: Standard, base: Base, options: PlacementOptions
-) -> Identifying:
+def _quick_choice(site: Site, made: Standard, base: Base) -> Identifying:
     """Touches on the best balls that the new ones leave, and a quick choice of them."""
     own = tuple(ball for ball in made.spheres if not ball.proves)
-    poses, choice = np.unique(base.touches.rotary, axis=0), options.choice
+    poses, choice = np.unique(base.touches.rotary, axis=0), site.options.choice
+    criterion = site.criterion
     tried = touches_to_choose_from(criterion.reach, made, own, poses, choice.touches)
     chosen, nearness = repaired_touches(criterion.on(made), tried, base.touches, choice)
     return Identifying(standard=made, poses=poses, tried=tried, chosen=chosen, nearness=nearness)

@@ -13,13 +13,12 @@ from dataclasses import replace
 import numpy as np
 
 from matstd.artefact.body import FreeformPatch, Standard
-from matstd.artefact.brief import PlacementOptions
 from matstd.artefact.hidden import hidden_power, measured_together
 from matstd.artefact.hidden import touched as single
 from matstd.artefact.layout import Blank, Wave, wavy_face, with_spheres
 from matstd.artefact.place.body_choice import balls_beside
 from matstd.artefact.place.family import MOST_COST
-from matstd.artefact.place.identifying import Base, Identifying, identifying_on, left_unknown
+from matstd.artefact.place.identifying import Identifying, Site, identifying_on, left_unknown
 from matstd.artefact.place.wavy_proof import (
     PLACES_PER_TOUCH,
     SCAN_POSES,
@@ -28,7 +27,7 @@ from matstd.artefact.place.wavy_proof import (
     showing_table_poses,
 )
 from matstd.artefact.reach import Requests, spread_poses
-from matstd.artefact.worth import BallPlaces, Criterion, ball_places, each_at, face_grid
+from matstd.artefact.worth import Criterion, ball_places, each_at, face_grid
 from matstd.twin.errors import NotBuildable, NotReachable
 from matstd.twin.frames import Array
 from matstd.twin.numbers import rms
@@ -53,22 +52,8 @@ _EVERY_NTH_TOUCH = 3  # every third identifying touch stands for all while waves
 PROOF_POSES = 6  # table poses of the touches on the face
 
 
-def wavy_choice(
-    criterion: Criterion,
-    places: BallPlaces,
-    base: Base,
-    all_poses: Array,
-    options: PlacementOptions,
-    effects_at: Array,
-    best_balls: float,
-    rng: np.random.Generator,
-) -> Identifying:
+def wavy_choice(site: Site) -> Identifying:
     """The wavy face that shows most, and the balls and touches that identify beside it.
-
-    Args:
-        base: The best balls alone.
-        effects_at: Where bumps may be, readings of the linear axes, (K, 3), mm.
-        best_balls: Error that they leave over the workspace, mm; infinite where there are none.
 
     Where every size costs more than it may the cheapest is returned; where families are compared
     it is left aside.
@@ -76,30 +61,31 @@ def wavy_choice(
     Raises:
         NotBuildable: No wavy face fits beside as many balls.
     """
-    wave = _best_wave(criterion, places.blank, base, all_poses, options, effects_at)
+    options, criterion, blank = site.options, site.criterion, site.places.blank
+    wave, rng = _best_wave(site), np.random.default_rng(site.brief.seed)
     most = _PROVING_COST if options.goal == "prove" else _ASKED_COST
     most = MOST_COST if options.family == "auto" else most
-    sizes, best, least, refused = list(_sizes(places.blank)), None, np.inf, "no balls fit"
+    sizes, best, least, refused = list(_sizes(blank)), None, np.inf, "no balls fit"
     first, last = 0, len(sizes)  # the largest that costs no more than it may is within
     while first < last:
         middle = (first + last) // 2
-        face = wavy_face("FF1", places.blank, replace(wave, half_size=sizes[middle]))
+        face = wavy_face("FF1", blank, replace(wave, half_size=sizes[middle]))
         cost = np.inf
         try:
-            ring = ball_places(criterion.plain, places.blank, all_poses, rng, [face])
+            ring = ball_places(criterion.plain, blank, site.all_poses, rng, [face])
             made = balls_beside([face], options.balls, ring, options.choice.touches)
             if made is not None:
                 made = replace(made, name=options.name, serial=options.serial)
-                found = identifying_on(criterion, made, all_poses, options.choice)
+                found = identifying_on(site, made)
                 left = left_unknown(criterion, made, found.tried[found.chosen])
-                cost = rms(left) / best_balls if np.isfinite(best_balls) else 1.0
+                cost = rms(left) / site.best_balls if np.isfinite(site.best_balls) else 1.0
         except NotReachable as error:
             refused = str(error)
         if cost <= most or cost < least:
             best, least = found, cost
         first, last = (first, middle) if cost <= most else (middle + 1, last)
     if best is None:
-        raise NotBuildable(f"no wavy face beside {len(base.balls)} balls: {refused}")
+        raise NotBuildable(f"no wavy face beside {len(site.bases[0].balls)} balls: {refused}")
     return best
 
 
@@ -111,27 +97,21 @@ def _sizes(blank: Blank) -> Iterator[tuple[float, float]]:
             yield round(a, 1), round(b, 1)
 
 
-def _best_wave(
-    criterion: Criterion,
-    blank: Blank,
-    base: Base,
-    all_poses: Array,
-    options: PlacementOptions,
-    effects_at: Array,
-) -> Wave:
+def _best_wave(site: Site) -> Wave:
     """The wave of which the least visible effect shows most."""
+    blank, base = site.places.blank, site.bases[0]
     size = min(_sizes(blank), key=lambda half: half[0] * half[1], default=None)
     if size is None:
         raise NotBuildable(
             f"no wavy face of {2 * _LEAST_HALF:g} mm fits on a base of "
             f"{2 * blank.base.half_size[0]:g} x {2 * blank.base.half_size[1]:g} mm beside balls"
         )
-    poses, given = spread_poses(all_poses, PROOF_POSES), base.touches[::_EVERY_NTH_TOUCH]
+    poses, given = spread_poses(site.all_poses, PROOF_POSES), base.touches[::_EVERY_NTH_TOUCH]
     bare = replace(with_spheres(blank, []), spheres=base.balls)
 
     def signal_of(wave: Wave) -> float:
         body = replace(bare, patches=(wavy_face("FF1", blank, wave),))
-        return _signal(criterion, body, given, poses, options, effects_at)
+        return _signal(site, body, given, poses)
 
     best, most, refused = _strongest(_waves(size, blank), signal_of)
     if best is None:
@@ -156,14 +136,7 @@ def _strongest(
     return best, most, refused
 
 
-def _signal(
-    criterion: Criterion,
-    body: Standard,
-    given: Requests,
-    poses: Array,
-    options: PlacementOptions,
-    effects_at: Array,
-) -> float:
+def _signal(site: Site, body: Standard, given: Requests, poses: Array) -> float:
     """Signal of the effect that a body with one wavy face shows least.
 
     Args:
@@ -172,6 +145,7 @@ def _signal(
     Raises:
         NotReachable: Too few places of the face can be touched.
     """
+    criterion, options, effects_at = site.criterion, site.options, site.effects_at
     here, count = criterion.plain.on(body), options.choice.proof
     on_balls = single(given, criterion.noise)
     tried = _some_touches(criterion, body.patches[0], poses, count)

@@ -52,9 +52,10 @@ def built():
         free = random_touches(reach, criterion.volume, criterion.rotary, 60, rng)
         choices = criterion, places, poses, blank, options.choice, visibility(criterion, free), rng
         with comparison.compared(*choices, options.balls) as others:
-            site = families.site_of(
-                brief, criterion, places, bodies, others.of_balls, poses, lambda *_: None
-            )
+            site = families.Site(
+                brief=brief, criterion=criterion, places=places, bodies=bodies,
+                rivals=others.of_balls, all_poses=poses, progress=lambda *_: None,
+            )  # fmt: skip
             chosen, judged = families.built_family(site)
             rivals = others.all()
     return made, judged, chosen.family, rivals, site

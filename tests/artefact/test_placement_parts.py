@@ -364,8 +364,8 @@ def test_a_draw_of_faces_that_fails_costs_nothing_of_what_the_first_found(monkey
             return SimpleNamespace(value=value)
 
         monkeypatch.setattr(identifying, "_draw", one)
-        base = SimpleNamespace(value=alone)
-        return identifying._best_draw(None, None, [base], None, silent).value, len(list(ends))
+        site = SimpleNamespace(bases=[SimpleNamespace(value=alone)], progress=silent)
+        return identifying._best_draw(site, None).value, len(list(ends))
 
     alone = 1.0
     assert drawn(1.5, None, 1.3, 1.4, None, 1.35, 1.2) == (1.3, 1)  # no more than six
