@@ -16,7 +16,6 @@ import numpy as np
 from matstd.diagnosis.accuracy import other_places
 from matstd.diagnosis.answer.ambiguity import ConfusionClass, Rival, plausibility
 from matstd.diagnosis.answer.steps import Step, left_by
-from matstd.diagnosis.evidence import ScaledEffect
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.regression import GrossErrors
 from matstd.diagnosis.search import FOUND_PRIOR_FACTOR, DiagnosisTask
@@ -36,7 +35,6 @@ tenth of an effect is less than its uncertainty usually is."""
 def averaged(
     task: DiagnosisTask,
     steps: Sequence[Step],
-    added: Sequence[ScaledEffect],
     classes: Sequence[ConfusionClass],
     gross: GrossErrors,
 ) -> Fit:
@@ -45,15 +43,14 @@ def averaged(
     Args:
         steps: The error falling; the last has the named members alone, and stands where no other
             member predicts anything else.
-        added: Effects of the user, the first ones.
-        classes: Of the other effects.
+        classes: Of the found effects, which follow those of the user.
     """
     touches, single = task.run.touches, steps[-1].fit
     there = other_places(touches, np.random.default_rng(0))
     effects = [s.effect for s in steps if s.effect is not None]
-    sized = [replace(one, effect=e) for one, e in zip(added, effects, strict=False)]
+    sized = [replace(one, effect=e) for one, e in zip(task.added, effects, strict=False)]
     names = {effect.name for effect in effects}
-    for effect, own in zip(effects[len(added) :], classes, strict=True):
+    for effect, own in zip(effects[len(task.added) :], classes, strict=True):
         head = Rival(replace(own.sized, effect=effect), 0.0, 1.0)
         rivals = (r for r in own.rivals if r.effect.name not in names)
         members = list(_different([head, *rivals], there))

@@ -85,7 +85,6 @@ def _later(touches: Touches, offers: Touches) -> Touches:
 
 def plans(
     task: DiagnosisTask,
-    added: tuple[ScaledEffect, ...],
     classes: Sequence[ConfusionClass],
     gross: GrossErrors,
     rng: np.random.Generator | None,
@@ -98,7 +97,7 @@ def plans(
     for i, confusion in enumerate(classes):
 
         def instead(rival: ScaledEffect, i: int = i) -> Fit:
-            return task.fit((*added, *heads[:i], rival, *heads[i + 1 :]), gross)
+            return task.fit_found((*heads[:i], rival, *heads[i + 1 :]), gross)
 
         name, alike = heads[i].effect.name, confusion.alike
         if alike is not None and alike.others:

@@ -57,7 +57,7 @@ from matstd.diagnosis.choice import (
     search_with_memory,
     with_chosen_set,
 )
-from matstd.diagnosis.evidence import Progress, RawColumns, ScaledEffect, quiet
+from matstd.diagnosis.evidence import Progress, RawColumns, quiet
 from matstd.diagnosis.faults import description_faults
 from matstd.diagnosis.fit import Prior, prior_for
 from matstd.diagnosis.geometry import learnt_geometry
@@ -119,18 +119,18 @@ def _diagnosed(
     rng: np.random.Generator | None,
 ) -> Diagnosis:
     """What a task lacks; arguments as of `diagnose`."""
-    added, library = _offered(task, named, candidates, progress)
+    task, library = _offered(task, named, candidates, progress)
     single = [e for e in library if not traits(e).is_shrunk]
-    task, final = search_with_memory(task, added, single, progress)
+    task, final = search_with_memory(task, single, progress)
     if task.model.chain.joints:  # errors of their lines bend like effects that are missing
-        task = task.suited((*added, *final.effects))
+        task = task.suited(final.effects)
     progress(0.5, "what cannot be distinguished")
-    tested, steps = significant_effects(task, added, final)
-    choice = chosen_by_prediction(task, added, tested.state, library, progress)
+    tested, steps = significant_effects(task, final)
+    choice = chosen_by_prediction(task, tested.state, library, progress)
     if choice is not None:
-        task, final = with_chosen_set(task, added, tested.state, choice, single, progress)
-        tested, steps = significant_effects(task, added, final)
-    return _result(task, added, tested, steps, choice, progress, rng)
+        task, final = with_chosen_set(task, tested.state, choice, single, progress)
+        tested, steps = significant_effects(task, final)
+    return _result(task, tested, steps, choice, progress, rng)
 
 
 def _offered(
@@ -138,20 +138,19 @@ def _offered(
     named: Sequence[Effect],
     candidates: Sequence[Effect] | None,
     progress: Progress,
-) -> tuple[tuple[ScaledEffect, ...], list[Effect]]:
-    """Effects that the user adds, and those that may be found beside them and the model."""
+) -> tuple[DiagnosisTask, list[Effect]]:
+    """The task with what the user adds, and what may be found beside that and the model."""
     added = refined_named(task, named, progress)
     if len(added) > 1:
         check_distinct(task.space(task.fit()), added)
     if candidates is None:
         candidates = candidate_effects(task.run.touches, is_bare=not task.model.effects)
     known = {e.name for e in (*task.model.effects, *(a.effect for a in added))}
-    return added, [e for e in candidates if e.name not in known]
+    return replace(task, added=added), [e for e in candidates if e.name not in known]
 
 
 def _result(
     task: DiagnosisTask,
-    added: tuple[ScaledEffect, ...],
     tested: ReportedSet,
     steps: tuple[Step, ...],
     choice: Choice | None,
@@ -160,7 +159,7 @@ def _result(
 ) -> Diagnosis:
     """The full report of the last round."""
     final, classes, gross = tested.state, tested.classes, tested.state.base.gross
-    last, predicting = steps[-1].fit, averaged(task, steps, added, classes, gross)
+    last, predicting = steps[-1].fit, averaged(task, steps, classes, gross)
     left = beyond_doubt(final.remains, last)
     repeats = repeatability(last)
     repeat = to_repeat(last, repeats)
@@ -170,11 +169,11 @@ def _result(
         last, task.prior if task.is_known else None, steps[0].fit if len(steps) > 1 else None
     )
     parts = verdict_parts(steps, left, geometry, faults, repeats, tested.against_drift)
-    verdict = verdict_of(parts, len(steps) > 1 + len(added), len(repeat) > 0)
+    verdict = verdict_of(parts, len(steps) > 1 + len(task.added), len(repeat) > 0)
     start = structures(final, progress)
     candidates = ranked_candidates(final)
     depends_on = dependences(left if parts.remains.is_real else start)
-    beside = (*added, *final.effects)
+    beside = (*task.added, *final.effects)
     progress(0.8, "what the run could have shown")
     seen = final.library.sample
     is_cured = verdict is not Verdict.UNEXPLAINED and len(steps) > 1
@@ -193,7 +192,7 @@ def _result(
         depends_on=depends_on,
         where=regions(steps[0].fit, last) if is_cured else regions(last),
         detectable=detectable(seen, final.effects, len(final.library.complement.u)),
-        plans=plans(task, added, classes, gross, rng),
+        plans=plans(task, classes, gross, rng),
         geometry=geometry,
         faults=faults,
         remarks=(

@@ -65,7 +65,7 @@ def _clarity(number: Reported) -> float:
 
 
 def significant_effects(
-    task: DiagnosisTask, added: tuple[ScaledEffect, ...], final: SearchState
+    task: DiagnosisTask, final: SearchState
 ) -> tuple[ReportedSet, tuple[Step, ...]]:
     """The reported set: every member beyond chance and its size beyond its uncertainty.
 
@@ -76,23 +76,21 @@ def significant_effects(
     """
     while True:
         tested = reported_set(final)
-        steps = _steps(task, added, tested, final.base.gross)
-        weak = tested.open_driver or weakest(steps[1 + len(added) :], final.is_weighed)
-        found = steps[1 + len(added) :]
+        steps = _steps(task, tested, final.base.gross)
+        found = steps[1 + len(task.added) :]
+        weak = tested.open_driver or weakest(found, final.is_weighed)
         is_open = tested.open_driver is None and len(found) == 1 and _is_beyond_chance(found[0])
         if weak is None or is_open:
             return tested, tuple(_determined(step) for step in steps)
         final = without(tested.state, weak)
 
 
-def _steps(
-    task: DiagnosisTask, added: tuple[ScaledEffect, ...], tested: ReportedSet, gross: GrossErrors
-) -> tuple[Step, ...]:
+def _steps(task: DiagnosisTask, tested: ReportedSet, gross: GrossErrors) -> tuple[Step, ...]:
     """The error falling: the starting model, named effects, found effects by their worth."""
     state, first = tested.state, task.fit((), gross)
     # the reported inner parameters are those that are drawn and saved
-    numbers, effects = sizes(task, (*added, *state.effects), gross, task.space(first))
-    classes = (*(None for _ in added), *tested.classes)
+    numbers, effects = sizes(task, (*task.added, *state.effects), gross, task.space(first))
+    classes = (*(None for _ in task.added), *tested.classes)
     out = [Step(effect=None, fit=first, p_value=1.0, reported=(), confusion=None)]
     for k, (confusion, found) in enumerate(zip(classes, numbers, strict=True)):
         # among periods that look alike, the uncertainty of one holds for none

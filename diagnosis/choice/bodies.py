@@ -49,11 +49,9 @@ class _Family:
     lags: dict[str, IntArray]  # numbers of the lags, by drive
 
 
-def bodies(
-    task: DiagnosisTask, added: tuple[ScaledEffect, ...], gross: GrossErrors
-) -> tuple[ScaledEffect, ...]:
+def bodies(task: DiagnosisTask, gross: GrossErrors) -> tuple[ScaledEffect, ...]:
     """For every distinguishable component error the body that explains it best, if any."""
-    complement = task.space(task.fit(added, gross))
+    complement = task.space(task.fit_found((), gross))
     touches = complement.touches
     chosen: list[ScaledEffect] = []
     for symbol in carriers(touches):

@@ -25,7 +25,6 @@ as the run cannot be estimated from it."""
 
 def with_chosen_set(
     task: DiagnosisTask,
-    added: tuple[ScaledEffect, ...],
     final: SearchState,
     choice: Choice,
     candidates: Sequence[Effect],
@@ -34,9 +33,9 @@ def with_chosen_set(
     """The task with rows that count as independent observations, and the chosen set in it."""
     gross, best = final.base.gross, choice.best
     task = replace(task, memory=None)
-    plain = task.fit((*added, *best.effects), gross)
+    plain = task.fit_found(best.effects, gross)
     task = replace(task, memory=_slow(choice.memory, int(plain.used.sum())))
-    base = task.fit(added, gross)
+    base = task.fit_found((), gross)
     # rows count for less, so a prior that was chosen beside whole rows must be wider by as much
     effects = tuple(_wider(s, base.weight) for s in best.effects)
     complement = task.space(base)

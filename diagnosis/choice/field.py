@@ -36,7 +36,6 @@ class _Block:
 
 def sized_field(
     task: DiagnosisTask,
-    added: tuple[ScaledEffect, ...],
     gross: GrossErrors,
     warm: Effect,
     groups: Sequence[IntArray],
@@ -46,14 +45,14 @@ def sized_field(
     Args:
         groups: Rows of the run in every block; rows not in use are passed over.
     """
-    base = task.fit(added, gross)
+    base = task.fit_found((), gross)
     blocks, model = _blocks(base, warm, groups)
     quiet = _quietest(blocks, model)
     errors = [_left_out(blocks, model, quiet, float(size)) for size in PRIOR_SIZES]
     size = float(PRIOR_SIZES[int(np.argmin(errors))])
     sized = ScaledEffect(warm, size / FOUND_PRIOR_FACTOR)
     for _ in range(NOISE_PASSES):
-        noise = task.fit((*added, sized), gross).noise.factor / base.noise.factor
+        noise = task.fit_found((sized,), gross).noise.factor / base.noise.factor
         sized = ScaledEffect(warm, size / FOUND_PRIOR_FACTOR * noise / quiet)
     return sized
 

@@ -36,8 +36,8 @@ def is_noise(memory: Memory, rows: int) -> bool:
 def memory_beside(
     task: DiagnosisTask, effects: Sequence[ScaledEffect], gross: GrossErrors | None = None
 ) -> Memory | None:
-    """Memory of the noise beside some effects; None where the run does not determine one."""
-    fit = replace(task, memory=None).fit(effects, gross)
+    """Memory of the noise beside found effects; None where the run does not determine one."""
+    fit = replace(task, memory=None).fit_found(effects, gross)
     memory, gain = memory_of(fit)
     is_determined = gain >= POLICY.memory_gain and is_noise(memory, int(fit.used.sum()))
     return memory if is_determined and fit.noise.factor <= POLICY.memory_noise else None
@@ -59,7 +59,6 @@ def _evidence(final: SearchState) -> float:
 
 def search_with_memory(
     task: DiagnosisTask,
-    added: tuple[ScaledEffect, ...],
     candidates: Sequence[Effect],
     progress: Progress = quiet,
 ) -> tuple[DiagnosisTask, SearchState]:
@@ -72,26 +71,24 @@ def search_with_memory(
     if len(task.run) > WHOLE_BELOW:
         run = chosen_rows(task.run)
         small = replace(task, run=run, raw=RawColumns(run.touches))
-        start = search_with_memory(small, added, candidates, progress)[1].effects
-        task = replace(task, memory=memory_beside(task, (*added, *start)))
-        return task, searched(task, added, candidates, progress, start)
-    final = searched(task, added, candidates, progress)
-    if (name := _wandering(task, added, final)) is not None:
+        start = search_with_memory(small, candidates, progress)[1].effects
+        task = replace(task, memory=memory_beside(task, start))
+        return task, searched(task, candidates, progress, start)
+    final = searched(task, candidates, progress)
+    if (name := _wandering(task, final)) is not None:
         others = [effect for effect in candidates if effect.name != name]
-        return search_with_memory(task, added, others, progress)
-    memory = memory_beside(task, (*added, *final.effects), final.base.gross)
+        return search_with_memory(task, others, progress)
+    memory = memory_beside(task, final.effects, final.base.gross)
     if memory is not None:
         beside = replace(task, memory=memory)
-        found = searched(beside, added, candidates, progress)
+        found = searched(beside, candidates, progress)
         is_noise = found.base.noise.factor <= max_noise(found.effects)
         if is_noise and _evidence(found) > _evidence(final):
             return beside, found
     return task, final
 
 
-def _wandering(
-    task: DiagnosisTask, added: tuple[ScaledEffect, ...], final: SearchState
-) -> str | None:
+def _wandering(task: DiagnosisTask, final: SearchState) -> str | None:
     """Name of a found effect that begins at an instant where a memory explains about as much.
 
     Noise that wanders is elsewhere after almost any instant. The memory is charged as beside a law,
@@ -104,7 +101,7 @@ def _wandering(
             continue
         others = final.search.evaluate(final.chosen.others(member))
         gained = final.chosen.effects.evidence - others.effects.evidence
-        fit = task.fit((*added, *others.sized), final.base.gross)
+        fit = task.fit_found(others.sized, final.base.gross)
         if gained - float(np.log(instants).sum()) < memory_score(fit) + POLICY.log_odds_alike:
             return member.effect.name
     return None

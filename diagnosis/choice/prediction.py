@@ -77,7 +77,6 @@ class Choice:
 
 def chosen_by_prediction(
     task: DiagnosisTask,
-    added: tuple[ScaledEffect, ...],
     final: SearchState,
     candidates: Sequence[Effect],
     progress: Progress = quiet,
@@ -91,18 +90,18 @@ def chosen_by_prediction(
         final: What was found, as it would be reported.
     """
     remembers, gross = task.memory is not None, final.base.gross
-    noise = task.fit((*added, *final.effects), gross).noise.factor
+    noise = task.fit_found(final.effects, gross).noise.factor
     is_open = noise > POLICY.memory_loud_noise if remembers else bool(final.remains)
     if not is_open or not drives(task.run.touches):
         return None
     # ways are compared in white noise: a memory would absorb what they are to explain
     task = replace(task, memory=None)
-    fit = task.fit((*added, *final.effects), gross)
+    fit = task.fit_found(final.effects, gross)
     memory, gain = memory_of(fit)
     if gain < POLICY.memory_gain or memory.per_independent < POLICY.memory_touches:
         return None
     task = thinned(task, fit)
-    fit = task.fit((*added, *final.effects), gross)
+    fit = task.fit_found(final.effects, gross)
     groups = blocks(fit, memory_of(fit)[0])
     found = final.effects
     drift = likeliest_drift(final.named)
@@ -113,20 +112,20 @@ def chosen_by_prediction(
         UNRECORDED: lambda _: (*found, *drifts),
     }
     if {"thermal-lag", "thermal-static"} <= {e.kind for e in candidates}:
-        ways[TWO_TIMES] = lambda part: bodies(part, added, gross)
+        ways[TWO_TIMES] = lambda part: bodies(part, gross)
     if (warm := next((e for e in candidates if traits(e).is_shrunk), None)) is not None:
-        ways[FIELD] = lambda part: (sized_field(part, added, gross, warm, groups),)
+        ways[FIELD] = lambda part: (sized_field(part, gross, warm, groups),)
     rules = []
     for done, (name, way) in enumerate(ways.items()):
         progress(done / len(ways), "choice by prediction")
-        rules.append(_judged(name, way, task, added, gross, groups))
+        rules.append(_judged(name, way, task, gross, groups))
     best = clearly_best(rules[:3], lambda rule: rule.error)
     other = clearly_best(rules[3:] or rules[:1], lambda rule: rule.error)
     if other.error < POLICY.error_share_in_sight * best.error:
         best = other
     if best.name in (FOUND, UNRECORDED) or (best is rules[0] and not found):
         return None
-    left = memory_of(task.fit((*added, *best.effects), gross))
+    left = memory_of(task.fit_found(best.effects, gross))
     return Choice(
         rules=tuple(rules),
         best=best,
@@ -139,7 +138,6 @@ def _judged(
     name: str,
     way: Way,
     task: DiagnosisTask,
-    added: tuple[ScaledEffect, ...],
     gross: GrossErrors,
     groups: Sequence[IntArray],
 ) -> ChoiceRule:
@@ -147,7 +145,7 @@ def _judged(
     errors = []
     for group in groups:
         part = without(task, group)
-        errors.append(rms(part.fit((*added, *way(part)), gross).residual[group]))
+        errors.append(rms(part.fit_found(way(part), gross).residual[group]))
     return ChoiceRule(name, way(task), np.array(errors), np.array([len(g) for g in groups]))
 
 

@@ -160,7 +160,6 @@ def refined_named(
 
 def searched(
     task: DiagnosisTask,
-    added: Sequence[ScaledEffect],
     candidates: Sequence[Effect],
     progress: Progress = quiet,
     start: Sequence[ScaledEffect] = (),
@@ -177,14 +176,14 @@ def searched(
     stated = [e for e, table in zip(candidates, is_stated, strict=True) if table]
     offered = [e for e, table in zip(candidates, is_stated, strict=True) if not table]
     offered += [s.effect for s in start if s.effect.name not in known]
-    state = _settled(task, added, offered, progress, start)
+    state = _settled(task, offered, progress, start)
     tried: set[frozenset[str]] = set()
     while True:
         for wider in _wider(state, offered, stated if not start else None):
             if wider.new in tried:
                 continue
             tried.add(wider.new)
-            other = _settled(task, added, wider.candidates, progress, wider.start or start)
+            other = _settled(task, wider.candidates, progress, wider.start or start)
             if _is_taken(wider, other) and other.held_out < wider.share * state.held_out:
                 state, offered = other, [*wider.candidates]
                 break
@@ -213,7 +212,6 @@ def _is_taken(wider: WiderSearch, state: SearchState) -> bool:
 
 def _settled(
     task: DiagnosisTask,
-    added: Sequence[ScaledEffect],
     candidates: Sequence[Effect],
     progress: Progress,
     start: Sequence[ScaledEffect],
@@ -225,24 +223,24 @@ def _settled(
     """
     touches = task.run.touches
     nameless = unrecorded(touches)
-    whole = task.fit((*added, *start))
-    base = task.fit(added, whole.gross, whole) if start else whole
+    whole = task.fit_found(start)
+    base = task.fit_found((), whole.gross, whole) if start else whole
     tried = unexplained_near_slip(touches, base.gross, start)
     if tried.any():
-        base = task.fit(added, without(base.gross, tried), whole if start else None)
+        base = task.fit_found((), without(base.gross, tried), whole if start else None)
     found: Sequence[ScaledEffect] = start
     budget = Budget()
     for remaining in reversed(range(MAX_ROUNDS)):
         library = Library.of(task.space(base), [*candidates, *nameless], progress)
         search, chosen = best_set(library, found, budget, progress)
         found = chosen.sized
-        whole = task.fit((*added, *found))
+        whole = task.fit_found(found)
         further = unexplained_near_slip(touches, whole.gross, found) & ~tried & (remaining > 1)
         is_same = np.array_equal(whole.gross.rows, base.gross.rows) and not further.any()
         if (is_same and not _is_quieter(whole, base)) or not remaining:
             break
         tried |= further
-        base = task.fit(added, without(whole.gross, further), whole)
+        base = task.fit_found((), without(whole.gross, further), whole)
     return _beside_patterns(base, library, search, chosen)
 
 

@@ -27,6 +27,7 @@ class DiagnosisTask:
     alone: Prior | None = None
     # of effects at its touches, for all projections of the diagnosis; None keeps none
     raw: RawColumns | None = None
+    added: tuple[ScaledEffect, ...] = ()  # what the user added: in every set that is searched
 
     def space(self, fit: Fit) -> ResidualSpace:
         """What a fit of this run leaves."""
@@ -45,11 +46,21 @@ class DiagnosisTask:
             prior = prior.joined(self.found_prior(sized))
         return fit_run(self.run, model, prior, None, gross, self.memory, beside)
 
+    def fit_found(
+        self,
+        effects: Sequence[ScaledEffect] = (),
+        gross: GrossErrors | None = None,
+        beside: Fit | None = None,
+    ) -> Fit:
+        """The same of effects that were found, beside those that the user added."""
+        return self.fit((*self.added, *effects), gross, beside)
+
     def suited(self, effects: Sequence[ScaledEffect]) -> "DiagnosisTask":
-        """The same with the prior that suits the machine once these effects are in the model.
+        """The same with the prior that suits the machine once found effects are in the model.
 
         What an effect does, errors of the machine seem to do as long as it is missing.
         """
+        effects = (*self.added, *effects)
         if self.is_known or not effects:
             return self
         model = Model(self.model.chain, (*self.model.effects, *(s.effect for s in effects)))

@@ -80,7 +80,7 @@ def test_a_field_of_own_columns_predicts_what_a_lag_between_its_own_does(run) ->
     warm = next(e for e in candidate_effects(run.touches) if e.kind == "thermal-field")
     assert warm.name == "thermal-field(Z,V_coolant_bar)"
     groups = np.array_split(np.arange(N), 5)
-    sized = sized_field(task, (), gross, warm, groups)
+    sized = sized_field(task, gross, warm, groups)
     held = np.arange(N) % 30 < 10
     split = np.where(held, "test", "train").astype("U5")
     part = replace(task, run=replace(run, split=split))

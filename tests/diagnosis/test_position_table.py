@@ -173,5 +173,5 @@ def test_noise_that_wanders_is_no_slip() -> None:
     candidates = [jump, parse_effect("backlash(X)", run.touches.chain)]
     start = ordinary_model(run.touches.chain)
     task = DiagnosisTask(run, start, Prior.of_effects(start.effects))
-    assert jump.name in {s.effect.name for s in searched(task, (), candidates).effects}
+    assert jump.name in {s.effect.name for s in searched(task, candidates).effects}
     assert [e.name for e in diagnose(run, candidates=candidates).found] == ["backlash(X)"]

@@ -82,7 +82,7 @@ def task_of(run: Run) -> DiagnosisTask:
 def test_both_time_constants_of_a_body_are_found_within_what_is_stated() -> None:
     task = task_of(record())
     gross = replace(task.fit().gross, rows=np.zeros(N, dtype=bool))
-    found = bodies(task, (), gross)
+    found = bodies(task, gross)
     names = {s.effect.name for s in found}
     assert {"thermal-lag(EZZ,bed)", "thermal-lag(EZZ,bed)#2", "thermal-static(EZZ,frame)"} <= names
     stated, _ = sizes(task, found, gross, ResidualSpace.of(task.fit((), gross)))
@@ -102,7 +102,7 @@ def test_a_large_effect_does_not_hide_what_is_small_beside_it() -> None:
     assert base.noise.factor > 20.0
     complement = ResidualSpace.of(base)
     nothing = EffectSet(complement, np.zeros((len(complement.residual), 0)))
-    found = EffectSet(complement, projected(complement, bodies(task, (), gross)))
+    found = EffectSet(complement, projected(complement, bodies(task, gross)))
     fall = 0.5 * N * np.log(nothing.objective / found.objective)
     gained = found.evidence - nothing.evidence + 0.5 * found.log_det
     assert gained == pytest.approx(fall, rel=0.1)
@@ -130,7 +130,7 @@ def test_the_size_of_a_field_is_that_of_ridge_regression_by_blocks() -> None:
     gross = replace(task.fit().gross, rows=np.zeros(N, dtype=bool))
     warm = field(run.touches)
     groups = np.array_split(np.arange(N), 5)
-    sized = sized_field(task, (), gross, warm, groups)
+    sized = sized_field(task, gross, warm, groups)
     fit = task.fit((sized,), gross)
     place = fit.of_effect(warm.name)
     C = columns(fit.effects, run.touches)
@@ -195,7 +195,7 @@ def test_the_stated_error_has_paid_for_the_choice(chosen) -> None:
     assert way.rows.sum() == N
     first = np.arange(way.rows[0])
     part = without(task, first)
-    fit = part.fit(bodies(part, (), gross), gross)
+    fit = part.fit(bodies(part, gross), gross)
     predicted = columns(fit.effects, task.run.touches) @ fit.theta
     error = np.sqrt(np.mean((task.run.deviation - predicted)[first] ** 2))
     assert way.errors[0] == pytest.approx(error, rel=1e-6)
@@ -236,7 +236,7 @@ def test_a_way_that_is_followed_counts_independent_observations(chosen) -> None:
     single = single_of(task.run)
     way = next(w for w in choice.rules if w.name == "two time constants")
     other = Choice(choice.rules, way, choice.blocks, Memory(0.9))
-    slow, final = with_chosen_set(task, (), searched(task, (), single), other, single)
+    slow, final = with_chosen_set(task, searched(task, single), other, single)
     assert slow.memory is not None
     assert not slow.memory.is_filtered
     complement = final.search.complement
@@ -329,7 +329,7 @@ def test_members_of_a_class_share_what_they_explain() -> None:
         for effect, fit in zip((None, one.effect), fits, strict=True)
     ]
     found = ConfusionClass(one, (Rival(other, 0.0, 1.0),), ())
-    whole = averaged(task, steps, (), [found], fits[1].gross)
+    whole = averaged(task, steps, [found], fits[1].gross)
     sizes = [whole.theta[whole.of_effect(s.effect.name)][0] / UM for s in (one, other)]
     assert sizes == pytest.approx([6.0, 6.0], rel=0.02)
     parted = replace(alike, temperature={"frame": frame + 10.0, "wall": frame})
@@ -340,4 +340,4 @@ def test_members_of_a_class_share_what_they_explain() -> None:
     assert u == pytest.approx(60.0, rel=0.05)  # the deviation of both answers from their mean
     # where nothing else could be meant the named member stands alone
     alone = ConfusionClass(one, (), ())
-    assert averaged(task, steps, (), [alone], fits[1].gross) is fits[1]
+    assert averaged(task, steps, [alone], fits[1].gross) is fits[1]

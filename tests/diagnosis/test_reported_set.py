@@ -40,7 +40,7 @@ def searched(case, key, names):
     start = ordinary_model(run.touches.chain)
     task = DiagnosisTask(run, start, Prior.of_effects(start.effects))
     library = [parse_effect(name, run.touches.chain) for name in names]
-    return task, search_loop.searched(task, (), library)
+    return task, search_loop.searched(task, library)
 
 
 # --- the set that is reported is the set that was tested ------------------------------------------
@@ -241,6 +241,6 @@ def test_rivals_of_a_large_effect_are_reported(case) -> None:
     task = DiagnosisTask(run, start, Prior.of_effects(start.effects))
     alike = [f"thermal-lag(EZ{axis})" for axis in "XYZ"]
     library = [parse_effect(n, start.chain) for n in [*alike, "thermal-lag(EXC)", "backlash(X)"]]
-    tested = reported_set(search_loop.searched(task, (), library))
+    tested = reported_set(search_loop.searched(task, library))
     growth = next(c for c in tested.classes if c.effect.name in alike)
     assert {growth.effect.name, *(r.effect.name for r in growth.rivals)} == set(alike)
