@@ -60,9 +60,8 @@ class Sag:
 
 def weight_directions(chain: Chain, q: Array, T_table_artefact: Array, down: str) -> Array:
     """Unit vectors along which weight pulls on a standard, artefact frame, (N, 3)."""
-    carrying = [k.name for k in chain.links if k.carries_workpiece and k.kind != "fixed"]
     still = q.copy()
-    still[:, [chain.axis_index(name) for name in carrying]] = 0.0
+    still[:, [chain.axis_index(name) for name in chain.carrying_axes]] = 0.0
     T_machine_table = table_to_tool(chain, still) @ inverse(table_to_tool(chain, q))
     T_machine_artefact = T_machine_table @ T_table_artefact
     return turn(inverse(T_machine_artefact), np.tile(DIRECTIONS[down], (len(q), 1)))

@@ -281,7 +281,7 @@ def _study(table: ProjectTable, path: Path) -> StudySettings:
 
 def _bodies(table: ProjectTable, chain: Chain, path: Path) -> tuple[Body, ...]:
     """Clamps, fixtures and covers, each on the table or on an axis that carries the workpiece."""
-    carriers = [k.name for k in chain.links if k.carries_workpiece and k.kind != "fixed"]
+    carriers = chain.carrying_axes
     for i, body in enumerate(table.workshop.bodies):
         if body.on and body.on not in carriers:
             expected = f"one that carries the workpiece: {', '.join(carriers) or 'none'}"

@@ -25,7 +25,7 @@ from matstd.artefact.worth import (
     some_touches,
     touches_to_choose_from,
 )
-from matstd.information.criteria import DesignCriterion, Posterior, prior_sd_of_tip
+from matstd.information.criteria import DesignCriterion, prior_sd_of_tip
 from matstd.information.selection import Selection, exchange, fill
 from matstd.twin.beside import beside
 from matstd.twin.errors import NotReachable
@@ -70,12 +70,10 @@ def evaluate_rival(
     body: Standard | None = None,
 ) -> Rival:
     """Figures of an artefact after its touches and random ones; no body is ideal scatter."""
-    after, rows = _posterior(criterion, chosen), criterion.rows(chosen)
+    after, rows = criterion.after(chosen), criterion.rows(chosen)
     over = after.predicted_sd(criterion.tip_volume)
     of_user = after.predicted_sd(criterion.tip_user)
-    by_chance = [
-        rms(_posterior(criterion, lot).predicted_sd(criterion.tip_volume)) for lot in random
-    ]
+    by_chance = [rms(criterion.after(lot).predicted_sd(criterion.tip_volume)) for lot in random]
     return Rival(
         name=name,
         rms=rms(over),
@@ -91,10 +89,6 @@ def evaluate_rival(
         available=available,
         body=body,
     )
-
-
-def _posterior(criterion: Criterion, touches: Requests) -> Posterior:
-    return Posterior(criterion.known_rows(touches), criterion.prior_sd, criterion.model.names)
 
 
 def prior_rms(criterion: Criterion) -> tuple[float, float]:
@@ -172,10 +166,11 @@ def _jobs(
         on_balls |= theirs()
     bodies = rivals(criterion.volume, blank, rng)
     for count in counts:
-        name, (body, tried) = f"{count} spheres", on_balls[count]
-        if body is None or tried is None:
+        name = f"{count} spheres"
+        if count not in on_balls:
             unreachable.append(name)
             continue
+        body, tried = on_balls[count]
         lots = random_lots(tried, options.touches, rng)
         here = criterion.on(body)
         jobs.append(
@@ -207,18 +202,17 @@ def _on_balls(
     all_poses: Array,
     blank: Blank,
     options: TouchOptions,
-) -> dict[int, tuple[Standard | None, Requests | None]]:
+) -> dict[int, tuple[Standard, Requests]]:
     """The best balls by their number, and the touches on them at the best table poses.
 
-    No body where the blank has no room, no touches where too few are possible.
+    None of a number for which the blank has no room or too few touches are possible.
     """
-    out: dict[int, tuple[Standard | None, Requests | None]] = {}
+    out: dict[int, tuple[Standard, Requests]] = {}
     for count in counts:
         balls = places.best(count, options.touches) if places is not None else []
-        body = with_spheres(blank, [b.centre for b in balls]) if len(balls) == count else None
-        out[count] = body, None
-        if body is None:
+        if len(balls) != count:
             continue
+        body = with_spheres(blank, [b.centre for b in balls])
         with suppress(NotReachable):
             own = chosen_poses(criterion.plain.on(body), body, body.spheres, all_poses, options)
             tried = touches_to_choose_from(

@@ -13,7 +13,7 @@ import numpy as np
 
 from matstd.artefact.reach import Requests
 from matstd.artefact.worth import Criterion
-from matstd.information.criteria import Posterior, prior_sd_of_tip
+from matstd.information.criteria import prior_sd_of_tip
 from matstd.sensitivity.montecarlo import WORST_SHARE
 from matstd.twin.frames import Array
 from matstd.twin.numbers import rms
@@ -47,8 +47,8 @@ def worst_regions(
     worst = np.argsort(-recurrence, kind="stable")[:count]
     reach, model = criterion.reach, criterion.model
     tip = model.tip_columns(at_poses(reach.chain, q[worst], reach.length))
-    known = Posterior(criterion.known_rows(touches), criterion.prior_sd, model.names)
-    before, after = prior_sd_of_tip(tip, model.prior_sd), known.predicted_sd(tip)
+    before = prior_sd_of_tip(tip, model.prior_sd)
+    after = criterion.after(touches).predicted_sd(tip)
     return WorstRegions(
         poses=count,
         recurrence=float(recurrence[worst].mean()),

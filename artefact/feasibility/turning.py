@@ -34,11 +34,10 @@ class Meeting:
     depth: float  # shortest way by which it would leave the other, mm
 
 
-def between(brief: Brief, body: Body) -> list[str]:
+def between(brief: Brief, body: Body) -> tuple[str, ...]:
     """Axes between a body and the table, whose readings move one past the other."""
-    links = brief.chain.links
-    inner = [k.name for k in links if k.carries_workpiece and k.kind != "fixed"]
-    return inner[: inner.index(body.on)] if body.on in inner else []
+    inner = brief.chain.carrying_axes
+    return inner[: inner.index(body.on)] if body.on in inner else ()
 
 
 def meetings(brief: Brief, setup: Setup) -> Iterator[Meeting]:

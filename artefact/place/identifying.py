@@ -27,7 +27,6 @@ from matstd.artefact.worth import (
     repaired_touches,
     touches_to_choose_from,
 )
-from matstd.information.criteria import Posterior
 from matstd.information.selection import Certificate
 from matstd.twin.compute import Progress
 from matstd.twin.errors import NotBuildable, NotReachable
@@ -226,8 +225,7 @@ def identifying_on(site: Site, standard: Standard) -> Identifying:
 def left_unknown(criterion: Criterion, standard: Standard, touches: Requests) -> Array:
     """Error of the tool point at poses of the workspace after touches on balls, (M,), mm."""
     here = criterion.on(replace(standard, patches=()))
-    after = Posterior(here.known_rows(touches), here.prior_sd, here.model.names)
-    return after.predicted_sd(here.tip_user)
+    return here.after(touches).predicted_sd(here.tip_user)
 
 
 def with_proof(

@@ -162,10 +162,10 @@ def still_frames(on: Iterable[str], chain: Chain, q: Array) -> dict[str, Array]:
     Raises:
         DesignError: An axis that does not carry the workpiece.
     """
-    inner = [k.name for k in chain.links if k.carries_workpiece and k.kind != "fixed"]
+    inner = chain.carrying_axes
     out = {}
     for name in dict.fromkeys(on):
-        if not name or name == next(iter(inner), ""):
+        if not name or inner[:1] == (name,):
             out[name] = np.broadcast_to(np.eye(4), (len(q), 4, 4))
             continue
         if name not in inner:

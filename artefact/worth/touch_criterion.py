@@ -21,6 +21,7 @@ from matstd.artefact.worth.calibration import Calibration
 from matstd.artefact.worth.potential import Potential, potential
 from matstd.information.criteria import (
     DesignCriterion,
+    Posterior,
     five_criteria,
     robust,
     whitened,
@@ -111,6 +112,10 @@ class Criterion:
         W, C = self.whitened(wanted), self.calibrated(wanted)
         factor = np.linalg.cholesky(np.eye(len(W)) + C @ C.T)
         return np.asarray(np.linalg.solve(factor, W), dtype=np.float64)
+
+    def after(self, wanted: Requests) -> Posterior:
+        """What is known of the machine after touches, with the features' places averaged over."""
+        return Posterior(self.known_rows(wanted), self.prior_sd, self.model.names)
 
     def whitened(self, wanted: Requests) -> Array:
         """Rows of touches in units of noise and prior, (N, P)."""

@@ -160,9 +160,8 @@ def small_travels(chain: Chain, table: tuple[float, ...]) -> list[str]:
 
 def _turns(chain: Chain) -> tuple[tuple[float, ...], ...]:
     """Ways to stand, that on the face square to the axis of a rotary table first."""
-    inner = (k for k in chain.links if k.carries_workpiece and k.kind != "fixed")
-    table = next(inner, None)
-    is_across = table is not None and table.kind == "rotary" and abs(table.direction[1]) > 0.7
+    tables = [chain.link(name) for name in chain.carrying_axes[:1]]
+    is_across = any(t.kind == "rotary" and abs(t.direction[1]) > 0.7 for t in tables)
     return (ON_ITS_SIDE, UPRIGHT) if is_across else (UPRIGHT, ON_ITS_SIDE)
 
 

@@ -1,8 +1,8 @@
 """State of the control during one of our programs: positions, modes, parameters, and refusals."""
 
-import copy
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -26,6 +26,7 @@ TOP_OF_TRAVEL = 20.0  # how far below the upper end of Z's travel a retract with
 SAME_ANGLE = 1e-3
 """Degrees by which a test may take off another reading than the one that was programmed."""
 
+_CHANGES_IN_PLACE = (np.ndarray, dict, set)  # of what a state holds
 SAME = 1e-6  # positions that differ by less are the same, mm or rad
 
 
@@ -70,13 +71,9 @@ class State:
 
     def copied(self) -> "State":
         """A state that can run on its own."""
-        other = copy.copy(self)
-        other.q, other.side = self.q.copy(), self.side.copy()
-        other.parameters, other.shift_off = dict(self.parameters), set(self.shift_off)
-        other.head_left = set(self.head_left)
-        other.stale, other.reached = set(self.stale), dict(self.reached)
-        other.turn_tested = set(self.turn_tested)
-        return other
+        own: dict[str, Any] = {}
+        own |= {k: v.copy() for k, v in vars(self).items() if isinstance(v, _CHANGES_IN_PLACE)}
+        return replace(self, **own)
 
     @property
     def terms(self) -> Terms:

@@ -16,7 +16,6 @@ from matstd.artefact.reach import Requests
 from matstd.artefact.worth import Criterion
 from matstd.diagnosis.accuracy import prove, seen_from
 from matstd.diagnosis.fit import Fit
-from matstd.information.criteria import Posterior
 from matstd.probe_paths.plan import TouchPlan
 from matstd.report.layout import LiveView
 from matstd.report.live import TREE, packed, scripted, style
@@ -119,8 +118,7 @@ def feature_shares(
     out = {}
     for name in ["", *np.unique(touches.feature).tolist()]:
         left = touches[np.flatnonzero(touches.feature != name)]
-        known = Posterior(on_body.known_rows(left), on_body.prior_sd, on_body.model.names)
-        out[name] = float(np.sqrt(np.sum(known.covariance * moment)))
+        out[name] = float(np.sqrt(np.sum(on_body.after(left).covariance * moment)))
     return out
 
 

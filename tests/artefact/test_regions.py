@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from matstd.artefact.compare import regions as room
+from matstd.information.criteria import Posterior
 from matstd.twin.units import UM
 
 
@@ -22,8 +23,9 @@ def criterion(monkeypatch):
     return SimpleNamespace(
         reach=SimpleNamespace(chain=None, length=160.0),
         model=model,
-        prior_sd=expected,
-        known_rows=lambda which: np.array(rows[which]) * expected / (0.5 * UM),
+        after=lambda which: Posterior(
+            np.array(rows[which]) * expected / (0.5 * UM), expected, model.names
+        ),
     )
 
 

@@ -148,6 +148,11 @@ class Chain(Displayed):
         return tuple(n for n in self.rotary_axes if not self.link(n).carries_workpiece)
 
     @cached_property
+    def carrying_axes(self) -> tuple[str, ...]:
+        """Axes that carry the workpiece, the innermost first; a spindle that turns it is one."""
+        return tuple(name for name in self.axes if self.link(name).carries_workpiece)
+
+    @cached_property
     def joints(self) -> tuple[str, ...]:
         """Joints of an open chain, from the foundation outwards; none on a machine tool."""
         return tuple(link.name for link in self.links if link.is_joint)
