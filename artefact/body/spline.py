@@ -1,4 +1,4 @@
-"""Tensor-product B-splines over the plane: values and derivatives at many points at once."""
+"""B-splines and their derivatives at many points at once; the jet of a height over a plane."""
 
 from dataclasses import dataclass
 from functools import lru_cache
@@ -147,45 +147,3 @@ class Jet:
             huv=self.huv + factor * other.huv,
             hvv=self.hvv + factor * other.hvv,
         )
-
-
-def jet(knots_u: Array, knots_v: Array, degree: tuple[int, int], poles: Array, uv: Array) -> Jet:
-    """Height field of a tensor spline with its first and second derivatives.
-
-    ``h(u, v) = sum_ij N_i(u) N_j(v) poles_ij``.
-
-    Args:
-        knots_u: Shape (nu + ku + 1,), mm.
-        knots_v: Shape (nv + kv + 1,), mm.
-        degree: (ku, kv).
-        poles: Control heights, shape (nu, nv), mm.
-        uv: Shape (N, 2), mm.
-
-    Returns:
-        Derivatives to the second order.
-    """
-    bu, bv, local = _local(knots_u, knots_v, degree, poles, uv, orders=3)
-    along_u = bu @ local  # (N, 3, kv + 1)
-    value = {
-        (a, b): np.einsum("nj,nj->n", along_u[:, a], bv[:, b])
-        for a, b in ((0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2))
-    }
-    return Jet(*value.values())
-
-
-def height(
-    knots_u: Array, knots_v: Array, degree: tuple[int, int], poles: Array, uv: Array
-) -> Array:
-    """Height alone, (N,), of the tensor spline of `jet`; arguments as there."""
-    bu, bv, local = _local(knots_u, knots_v, degree, poles, uv, orders=1)
-    return np.einsum("nj,nj->n", (bu @ local)[:, 0], bv[:, 0])
-
-
-def _local(
-    knots_u: Array, knots_v: Array, degree: tuple[int, int], poles: Array, uv: Array, orders: int
-) -> tuple[Array, Array, Array]:
-    """B-splines in u and v at each point, and the poles they act on, (N, ku + 1, kv + 1)."""
-    first_u, bu = basis(knots_u, degree[0], uv[:, 0], orders)
-    first_v, bv = basis(knots_v, degree[1], uv[:, 1], orders)
-    windows = np.lib.stride_tricks.sliding_window_view(poles, (degree[0] + 1, degree[1] + 1))
-    return bu, bv, windows[first_u, first_v]

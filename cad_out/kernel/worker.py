@@ -139,7 +139,7 @@ def _mesh(standard: Standard, solid: Solid, chord: float) -> tuple[Mesh, float]:
         corners, triangles, numbers = triangulate(solid.plain, asked)
         owner = np.array([names.get(number, "") for number in range(numbers.max() + 1)])[numbers]
         mesh = joined([Mesh(corners, triangles, owner), *balls])
-        errors = chord_errors(standard, mesh.corners, mesh.triangles, mesh.owner)
+        errors = chord_errors(standard, mesh)
         farthest = farthest_from_faces(solid.plain, corners, triangles, numbers)
         worst = max(farthest, *errors.values())
         if worst <= chord:

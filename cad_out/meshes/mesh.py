@@ -149,18 +149,11 @@ def mesh_volume(corners: Array, triangles: np.ndarray) -> float:
     return float(np.einsum("ni,ni->", a, np.cross(b, c)) / 6.0)
 
 
-def chord_errors(
-    standard: Standard, corners: Array, triangles: np.ndarray, owner: np.ndarray
-) -> dict[str, float]:
+def chord_errors(standard: Standard, mesh: Mesh) -> dict[str, float]:
     """Largest distance of the triangles of every patch and sphere from the exact surface.
 
     For a patch the distance is ``(z - h) cos(slope)`` with the slope of the triangle, right to
     first order in itself; the surface's own slope would take four times as long.
-
-    Args:
-        corners: Shape (V, 3), mm.
-        triangles: Shape (F, 3).
-        owner: Name of each triangle's feature, (F,).
 
     Returns:
         Distance by feature name, mm; infinite where a feature has no triangle at all.
@@ -168,7 +161,7 @@ def chord_errors(
     errors = {}
     surfaces: tuple[FreeformPatch | DatumSphere, ...] = (*standard.patches, *standard.spheres)
     for surface in surfaces:
-        mine = corners[triangles[owner == surface.name]]  # (F, 3, 3)
+        mine = mesh.corners[mesh.triangles[mesh.owner == surface.name]]  # (F, 3, 3)
         if not len(mine):
             errors[surface.name] = np.inf
             continue
@@ -216,11 +209,12 @@ def aspects(corners: Array, triangles: np.ndarray) -> Array:
     return longest / np.maximum(twice, 1e-300)
 
 
-def face_areas(corners: Array, triangles: np.ndarray, owner: np.ndarray) -> dict[str, float]:
+def face_areas(mesh: Mesh) -> dict[str, float]:
     """Area of the triangles of every named feature, mm^2."""
-    a, b, c = (corners[triangles[:, k]] for k in range(3))
+    a, b, c = (mesh.corners[mesh.triangles[:, k]] for k in range(3))
     area = 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
-    return {str(name): float(area[owner == name].sum()) for name in np.unique(owner) if name}
+    names = np.unique(mesh.owner)
+    return {str(name): float(area[mesh.owner == name].sum()) for name in names if name}
 
 
 def owners(standard: Standard, corners: Array, triangles: np.ndarray) -> np.ndarray:

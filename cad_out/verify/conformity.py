@@ -11,6 +11,7 @@ from matstd.artefact.body import BLEND, Standard
 from matstd.cad_out.details import BALL, Details, Screw, details_of
 from matstd.cad_out.kernel import FACES, STEP
 from matstd.cad_out.meshes import (
+    Mesh,
     aspects,
     chord_errors,
     face_areas,
@@ -200,6 +201,7 @@ def measure(
     alone, wanted = read_faces(folder / FACES), face_names(standard, details)
     apart = [face_deviations(standard, every) for every in (faces, faces | alone)]
     corners, triangles = read_stl(stl)
+    mesh = Mesh(corners, triangles, owner)
     named = set(faces) & set(found["names"])
     screws = {kind.name: kind for kind in details.screws}
     made = built["volumes"]
@@ -232,14 +234,14 @@ def measure(
         parts=built["parts"],
         misread=missing_annotations(standard, details, entities, found),
         face_deviation={name: max(one[name] for one in apart) for name in apart[0]},
-        area_error=area_errors(standard, face_areas(corners, triangles, owner)),
+        area_error=area_errors(standard, face_areas(mesh)),
         is_watertight=is_watertight(corners, triangles),
         mesh_volume=mesh_volume(corners, triangles),
         manifold_volume=manifold_volume(corners, triangles),
         sharp=_sharp(standard, details, corners, triangles),
         triangles=len(triangles),
         chord=chord,
-        chord_error=chord_errors(standard, corners, triangles, owner),
+        chord_error=chord_errors(standard, mesh),
         body_chord_error=built["body_chord_error"],
         aspect=float(aspects(corners, triangles).max()),
         step_bytes=(folder / STEP).stat().st_size,

@@ -17,6 +17,7 @@ from matstd.cad_out.kernel import process, run_apart
 from matstd.cad_out.kernel.exchange import with_units_of_density
 from matstd.cad_out.kernel.process import Ending
 from matstd.cad_out.meshes import (
+    Mesh,
     chord_errors,
     is_watertight,
     manifold_volume,
@@ -217,7 +218,7 @@ def test_chord_error_of_a_triangle_on_a_sphere_is_its_sagitta(upright):
     sagitta = sphere.radius * (1.0 - np.cos(lean))
     one = replace(upright, patches=upright.patches[:1], spheres=(sphere,))
     owner = np.array([sphere.name])
-    errors = chord_errors(one, corners, np.array([[0, 1, 2]]), owner)
+    errors = chord_errors(one, Mesh(corners, np.array([[0, 1, 2]]), owner))
     # the lattice of measured points has none exactly in the middle: a little less is found
     assert 0.85 * sagitta < errors[sphere.name] <= sagitta + NM
     assert up @ (corners.mean(axis=0) - sphere.centre) == pytest.approx(sphere.radius - sagitta)
