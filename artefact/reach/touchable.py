@@ -9,8 +9,9 @@ from dataclasses import dataclass, field, fields
 import numpy as np
 
 from matstd.artefact.body import Meeting, Standard, contact
-from matstd.artefact.reach.probe_clearance import Clearance, ProbeShape
-from matstd.artefact.reach.workshop import Workshop, clearance_in_workshop, still_frames
+from matstd.artefact.reach.face_of_table import table_face
+from matstd.artefact.reach.probe_clearance import Clearance, ProbeShape, clearance
+from matstd.artefact.reach.workshop import Workshop, still_frames
 from matstd.twin.frames import Array, IntArray, Mask, apply, inverse, turn
 from matstd.twin.machine import (
     Chain,
@@ -258,22 +259,31 @@ class ProbeReach:
     def _room(
         self, standard: Standard, wanted: Requests, gap: float, is_near_lid: bool = False
     ) -> Clearance:
-        """How near anything comes to the probe above its ball, and the table to the ball."""
-        poses = self._pose_kinematics(wanted)
-        place = self.setup.T_table_artefact
+        """How near the probe comes to the standard and to everything round it; from below.
+
+        The ball itself is looked at against all but the standard, which it is meant to touch.
+        """
+        poses, place, probe = self._pose_kinematics(wanted), self.setup.T_table_artefact, self.shape
+        T_table_tool = poses.T_table_tool[poses.index]
         centre = apply(place, wanted.point + (self.radius + gap) * wanted.normal)
-        frames = still_frames(self.workshop.on, self.chain, poses.q)
-        return clearance_in_workshop(
-            standard,
-            place,
-            poses.T_table_tool[poses.index],
-            centre,
-            self.shape,
-            self.workshop,
-            {name: T[poses.index] for name, T in frames.items()},
-            enough=self.room,
-            is_near_lid=is_near_lid,
-        )
+        at, axis = apply(inverse(place), centre), turn(inverse(place), T_table_tool[:, :3, 2])
+        near = clearance(standard, at, axis, probe, self.room, is_near_lid)
+        room, body = near.distance, near.body.astype("U32")
+        still = still_frames(self.workshop.on, self.chain, poses.q)
+        for solid in self.workshop.solids:
+            T = inverse(table_face(place) @ solid.T_face_solid) @ still[solid.on][poses.index]
+            of_probe = np.full(len(centre), -np.inf)
+            for places, radii in (probe.rough_cover(), probe.fine_cover()):
+                tight = np.flatnonzero(of_probe < self.room)
+                balls = centre[tight, None] + turn(T_table_tool[tight, None], places)
+                balls = apply(T[tight, None], balls).reshape(-1, 3)
+                each = solid.plate.distance(balls).reshape(len(tight), len(radii)) - radii
+                of_probe[tight] = np.maximum(of_probe[tight], each.min(axis=1, initial=np.inf))
+            of_ball = solid.plate.distance(apply(T, centre)) - probe.ball_radius
+            nearest = np.minimum(of_probe, of_ball)
+            nearer = nearest < room
+            room, body = np.where(nearer, nearest, room), np.where(nearer, solid.name, body)
+        return Clearance(room, body)
 
     def _way_down(self, standard: Standard, wanted: Requests) -> Labels:
         """What the ball meets on its way down to the start."""

@@ -4,16 +4,15 @@ Every body is an upright prism over a rectangle or a disc, which a program can s
 Anything else is covered by such bodies (`matstd.artefact.reach.mesh_cover`).
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from matstd.artefact.body import DatumSphere, Plate, Standard
 from matstd.artefact.reach.face_of_table import table_face
-from matstd.artefact.reach.probe_clearance import Clearance, ProbeShape, clearance
 from matstd.twin.errors import DesignError
-from matstd.twin.frames import Array, apply, inverse, pose, rotation, turn
+from matstd.twin.frames import Array, apply, inverse, pose, rotation
 from matstd.twin.machine import Chain, table_to_tool
 
 DATUM = "DATUM"  # name of the feature
@@ -177,49 +176,3 @@ def still_frames(on: Iterable[str], chain: Chain, q: Array) -> dict[str, Array]:
         still[:, [chain.axis_index(a) for a in inner[: inner.index(name)]]] = 0.0
         out[name] = table_to_tool(chain, still) @ inverse(table_to_tool(chain, q))
     return out
-
-
-def clearance_in_workshop(
-    standard: Standard,
-    T_table_artefact: Array,
-    T_table_tool: Array,
-    centre: Array,
-    probe: ProbeShape,
-    workshop: Workshop,
-    T_still_table: Mapping[str, Array],
-    enough: float,
-    is_near_lid: bool,
-) -> Clearance:
-    """How near the probe comes to the standard and to everything round it; from below.
-
-    The ball itself is looked at against all but the standard, which it is meant to touch.
-
-    Args:
-        standard: In the artefact frame.
-        T_table_tool: Of which the rotation gives the tool axis, shape (N, 4, 4).
-        centre: Ball centres, table frame, shape (N, 3), mm.
-        T_still_table: Their frames, as `still_frames` gives them.
-        enough: Room beyond which the exact figure does not matter, mm.
-        is_near_lid: As of `clearance`.
-    """
-    T_artefact_table = inverse(T_table_artefact)
-    axis = turn(T_artefact_table, T_table_tool[:, :3, 2])
-    at = apply(T_artefact_table, centre)
-    near = clearance(standard, at, axis, probe, enough, is_near_lid)
-    room, body = near.distance, near.body.astype("U32")
-    covers = (probe.rough_cover(), probe.fine_cover())
-    T_table_face = table_face(T_table_artefact)
-    for solid in workshop.solids:
-        T = inverse(T_table_face @ solid.T_face_solid) @ T_still_table[solid.on]
-        gap = np.full(len(centre), -np.inf)
-        for places, radii in covers:
-            tight = np.flatnonzero(gap < enough)
-            balls = centre[tight, None] + turn(T_table_tool[tight, None], places)
-            balls = apply(T[tight, None], balls).reshape(-1, 3)
-            each = solid.plate.distance(balls).reshape(len(tight), len(radii)) - radii
-            gap[tight] = np.maximum(gap[tight], each.min(axis=1, initial=np.inf))
-        ball = solid.plate.distance(apply(T, centre)) - probe.ball_radius
-        gap = np.minimum(gap, ball)
-        nearer = gap < room
-        room, body = np.where(nearer, gap, room), np.where(nearer, solid.name, body)
-    return Clearance(room, body)
