@@ -5,7 +5,7 @@ Chebyshev series of the readings on which they depend, which reproduce smooth fu
 digits of a double. What a series leaves (steps, kinks) is measured and stated with it.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import product
 
@@ -118,129 +118,112 @@ def error_functions(errors: MachineErrors, length: float, duration: float) -> li
 def _series(space: _Space, rng: np.random.Generator) -> list[Series] | None:
     """All components of one error; None where it cannot be written so."""
     axes = len(space.low) - 1
-    x, still = space.drawn(rng), np.zeros((_CHECKED, axes))
-    parts: list[tuple[tuple[int, int] | None, Callable[[Array], Array]]] = [
-        (None, lambda x: space.at(x, np.zeros((len(x), axes))))
-    ]
-    total = space.at(x, still)
-    sides = rng.choice([-1.0, 1.0], still.shape)
+    x, parts = space.drawn(rng), [_Part(space)]
+    total = parts[0].at(x)
+    sides = rng.choice([-1.0, 1.0], (_CHECKED, axes))
     for axis, sign in product(range(axes), (-1, 1)):
-        added = _on_one_side(space, axis, sign)
-        extra = added(x)
+        part = _Part(space, (axis, sign))
+        extra = part.at(x)
         if np.any(extra):
-            parts.append(((axis, sign), added))
+            parts.append(part)
             total += np.where(sides[:, [axis]] == sign, extra, 0.0)
     whole = space.at(x, sides)
     # sides of several axes have to add up, or no sum of functions is right
     if np.abs(whole - total).max() > 1e-9 * max(np.abs(whole).max(), 1e-12):
         return None
     out: list[Series] = []
-    for side, function in parts:
-        found = _functions(space, function, side, x, rng)
+    for part in parts:
+        found = part.series(x, rng)
         if found is None:
             return None
         out += found
     return out
 
 
-def _on_one_side(space: _Space, axis: int, sign: int) -> Callable[[Array], Array]:
-    """What an axis that comes from one side adds to what holds without a side."""
+@dataclass(frozen=True, eq=False)
+class _Part:
+    """What one error adds whatever moved, or what an axis that comes from one side adds to it."""
 
-    def extra(x: Array) -> Array:
-        sides = np.zeros((len(x), len(space.low) - 1))
-        plain = space.at(x, sides)
+    space: _Space
+    side: tuple[int, int] | None = None  # as of `Series`
+
+    def at(self, x: Array) -> Array:
+        """Components at readings and time x (N, A + 1), as of `_Space`."""
+        sides = np.zeros((len(x), len(self.space.low) - 1))
+        plain = self.space.at(x, sides)
+        if self.side is None:
+            return plain
+        axis, sign = self.side
         sides[:, axis] = sign
-        return space.at(x, sides) - plain
+        return self.space.at(x, sides) - plain
 
-    return extra
-
-
-def _functions(
-    space: _Space,
-    function: Callable[[Array], Array],
-    side: tuple[int, int] | None,
-    x: Array,
-    rng: np.random.Generator,
-) -> list[Series] | None:
-    """Series of all components that are not zero everywhere; None for too many readings."""
-    values = function(x)
-    alive = np.flatnonzero(np.any(values, axis=0))
-    on: dict[int, list[int]] = {int(entry): [] for entry in alive}
-    for reading in range(len(space.low)):
-        moved = x.copy()
-        moved[:, reading] = rng.uniform(space.low[reading], space.high[reading], len(x))
-        change = np.abs(function(moved) - values).max(axis=0)
-        for entry in on:
-            if change[entry] > EXACT * np.abs(values[:, entry]).max():
-                on[entry].append(reading)
-    out = []
-    # components that depend on the same readings are sampled together
-    for readings in sorted({tuple(r) for r in on.values()}):
-        if len(readings) > MOST_READINGS:
-            return None
-        mine = [entry for entry, r in on.items() if tuple(r) == readings]
-        for entry, c, off in _fitted(space, function, readings, mine, x, values):
-            part, rest = divmod(entry, values.shape[1] // 2)
-            link, component = divmod(rest, 6)
-            out.append(
-                Series(
-                    part=("twist", "place")[part],
-                    link=link,
-                    component=component,
-                    readings=readings,
-                    coefficients=c,
-                    side=side,
-                    off=off,
+    def series(self, x: Array, rng: np.random.Generator) -> list[Series] | None:
+        """All components that are not zero everywhere; None for too many readings."""
+        values, low, high = self.at(x), self.space.low, self.space.high
+        alive = np.flatnonzero(np.any(values, axis=0))
+        on: dict[int, list[int]] = {int(entry): [] for entry in alive}
+        for reading in range(len(low)):
+            moved = x.copy()
+            moved[:, reading] = rng.uniform(low[reading], high[reading], len(x))
+            change = np.abs(self.at(moved) - values).max(axis=0)
+            for entry in on:
+                if change[entry] > EXACT * np.abs(values[:, entry]).max():
+                    on[entry].append(reading)
+        out = []
+        # components that depend on the same readings are sampled together
+        for readings in sorted({tuple(r) for r in on.values()}):
+            if len(readings) > MOST_READINGS:
+                return None
+            mine = [entry for entry, r in on.items() if tuple(r) == readings]
+            for entry, c, off in self._fitted(readings, mine, x, values):
+                part, rest = divmod(entry, values.shape[1] // 2)
+                link, component = divmod(rest, 6)
+                out.append(
+                    Series(
+                        part=("twist", "place")[part],
+                        link=link,
+                        component=component,
+                        readings=readings,
+                        coefficients=c,
+                        side=self.side,
+                        off=off,
+                    )
                 )
-            )
-    return out
+        return out
 
+    def _fitted(
+        self, readings: tuple[int, ...], entries: list[int], x: Array, values: Array
+    ) -> Iterator[tuple[int, Array, float]]:
+        """Coefficients of some components, of the lowest degree that is exact; what they leave."""
+        size = np.abs(values[:, entries]).max(axis=0)
+        if not readings:
+            for entry in entries:
+                yield entry, values[0, entry], float(np.ptp(values[:, entry]))
+            return
+        low, high = self.space.low[list(readings)], self.space.high[list(readings)]
+        u = (2.0 * x[:, list(readings)] - (low + high)) / (high - low)
+        for degree in _DEGREES[len(readings)]:
+            c = self._coefficients(readings, entries, degree)
+            found = series_at(c, u)
+            off = np.abs(found - values[:, entries]).max(axis=0)
+            if np.all(off <= EXACT * size):
+                break
+        for k, entry in enumerate(entries):
+            yield entry, _shortened(c[..., k], size[k]), float(off[k])
 
-def _fitted(
-    space: _Space,
-    function: Callable[[Array], Array],
-    readings: tuple[int, ...],
-    entries: list[int],
-    x: Array,
-    values: Array,
-) -> Iterator[tuple[int, Array, float]]:
-    """Coefficients of some components, of the lowest degree that is exact, with what they leave."""
-    size = np.abs(values[:, entries]).max(axis=0)
-    if not readings:
-        for entry in entries:
-            yield entry, values[0, entry], float(np.ptp(values[:, entry]))
-        return
-    low, high = space.low[list(readings)], space.high[list(readings)]
-    u = (2.0 * x[:, list(readings)] - (low + high)) / (high - low)
-    for degree in _DEGREES[len(readings)]:
-        c = _coefficients(space, function, readings, entries, degree)
-        found = series_at(c, u)
-        off = np.abs(found - values[:, entries]).max(axis=0)
-        if np.all(off <= EXACT * size):
-            break
-    for k, entry in enumerate(entries):
-        yield entry, _shortened(c[..., k], size[k]), float(off[k])
-
-
-def _coefficients(
-    space: _Space,
-    function: Callable[[Array], Array],
-    readings: tuple[int, ...],
-    entries: list[int],
-    degree: int,
-) -> Array:
-    """Interpolation at the Chebyshev points of the first kind, one dimension a reading."""
-    n = degree + 1
-    points = np.cos(np.pi * (np.arange(n) + 0.5) / n)
-    grid = grid_points(*[points] * len(readings))
-    x = np.tile(0.5 * (space.low + space.high), (len(grid), 1))
-    low, high = space.low[list(readings)], space.high[list(readings)]
-    x[:, list(readings)] = 0.5 * ((low + high) + grid * (high - low))
-    c = function(x)[:, entries].reshape(*[n] * len(readings), len(entries))
-    for axis in range(len(readings)):
-        c = dct(c, axis=axis) / n
-        c[(slice(None),) * axis + (0,)] *= 0.5
-    return np.asarray(c)
+    def _coefficients(self, readings: tuple[int, ...], entries: list[int], degree: int) -> Array:
+        """Interpolation at the Chebyshev points of the first kind, one dimension a reading."""
+        n = degree + 1
+        points = np.cos(np.pi * (np.arange(n) + 0.5) / n)
+        grid = grid_points(*[points] * len(readings))
+        x = np.tile(0.5 * (self.space.low + self.space.high), (len(grid), 1))
+        low, high = self.space.low[list(readings)], self.space.high[list(readings)]
+        x[:, list(readings)] = 0.5 * ((low + high) + grid * (high - low))
+        c = self.at(x)[:, entries].reshape(*[n] * len(readings), len(entries))
+        for axis in range(len(readings)):
+            c = dct(c, axis=axis) / n
+            c[(slice(None),) * axis + (0,)] *= 0.5
+        return np.asarray(c)
 
 
 def series_at(c: Array, u: Array) -> Array:
