@@ -53,8 +53,11 @@ class _FacePool:
 
 @dataclass(frozen=True)
 class _Demands:
-    """Requirements on faces that are added after a body was refused for lack of them."""
+    """What is asked of faces; some of it only after a body was refused for lack of it."""
 
+    count: int  # of faces
+    take: int  # touches on each face by which its worth is judged
+    touches: Requests  # on the balls, which faces may hide
     light: bool = False  # faces keep the standard within its mass limit
     seen: bool = False  # faces can be probed beside each other
 
@@ -106,34 +109,24 @@ class BodyChoice:
         Raises:
             NotBuildable: No such body; names the binding limit.
         """
-        wanted = name, serial, touches, count, max(4, proving // count)
+        asked = _Demands(count, max(4, proving // count), touches)
         try:
-            return self._build(list(balls), *wanted)
+            return self._build(name, serial, list(balls), asked)
         except NotBuildable:
             # the most informative balls leave no room: use those that are known to fit
-            return self._build(list(self.room.balls), *wanted)
+            return self._build(name, serial, list(self.room.balls), asked)
 
-    def _build(
-        self,
-        balls: list[DatumSphere],
-        name: str,
-        serial: str,
-        touches: Requests,
-        count: int,
-        take: int,
-    ) -> Standard:
+    def _build(self, name: str, serial: str, balls: list[DatumSphere], asked: _Demands) -> Standard:
         """A body with faces between the balls, chosen again until no limit is violated."""
-        limits, asked = self.blank.limits, _Demands()
+        limits, count = self.blank.limits, asked.count
         standing, holes = self._with_holes(balls)
-        there, standing = self._faces_between(standing, holes, touches, count, asked)
+        there, standing = self._faces_between(standing, holes, asked)
         refused, binding = "", list[str]()
         for _ in range(_REBUILDS):
-            chosen = self._choose_faces(there, count, take)
+            chosen = self._choose_faces(there, asked)
             while len(chosen) < count and len(standing) > FEWEST_BALLS:
-                there, standing = self._faces_between(
-                    asked.fewer(standing), holes, touches, count, asked
-                )
-                chosen = self._choose_faces(there, count, take)
+                there, standing = self._faces_between(asked.fewer(standing), holes, asked)
+                chosen = self._choose_faces(there, asked)
             if len(chosen) < count:
                 raise NotBuildable(
                     f"only {len(chosen)} of {count} patches fit on the blank beside "
@@ -155,7 +148,7 @@ class BodyChoice:
             refused, binding = f"; {what}", [c.name for c in broken]
             if "mass" in binding and not asked.light:
                 asked = replace(asked, light=True)
-                there, standing = self._faces_between(standing, holes, touches, count, asked)
+                there, standing = self._faces_between(standing, holes, asked)
                 continue
             if not broken and not asked.seen:
                 asked = replace(asked, seen=True)
@@ -185,14 +178,10 @@ class BodyChoice:
                 balls = balls[:-1]
 
     def _faces_between(
-        self,
-        balls: list[DatumSphere],
-        holes: tuple[MountingHole, ...],
-        touches: Requests,
-        count: int,
-        asked: "_Demands",
-    ) -> tuple["_FacePool", list[DatumSphere]]:
+        self, balls: list[DatumSphere], holes: tuple[MountingHole, ...], asked: _Demands
+    ) -> tuple[_FacePool, list[DatumSphere]]:
         """Candidate faces, and the balls: dropped from the end until enough faces fit."""
+        count, touches = asked.count, asked.touches
         poses = spread_poses(np.unique(touches.rotary, axis=0), _POSES)
         while True:
             heaviest = mass_per_face(self.blank, balls, holes, count) if asked.light else np.inf
@@ -217,16 +206,16 @@ class BodyChoice:
                 return _FacePool(faces, fits, hides, poses), balls
             balls = asked.fewer(balls)
 
-    def _choose_faces(self, there: "_FacePool", count: int, take: int) -> list[int]:
+    def _choose_faces(self, there: _FacePool, asked: _Demands) -> list[int]:
         """The most informative of the faces that hide fewest touches; fewer where no more fit."""
-        longest = list[int]()
+        longest, count = list[int](), asked.count
         for most in _HIDDEN_SHARES:
             free = np.flatnonzero(there.hides <= most)
             fits = there.fits[np.ix_(free, free)]
             found = most_side_by_side(fits, count, starts=_STARTS)
             if len(found) == count:
                 some = [there.faces[k] for k in free]
-                found = self._most_informative(some, fits, there.poses, count, take)
+                found = self._most_informative(some, fits, there.poses, asked)
             if len(found) > len(longest):
                 longest = [int(free[i]) for i in found]
             if len(longest) == count:
@@ -234,7 +223,7 @@ class BodyChoice:
         return longest
 
     def _most_informative(
-        self, faces: list[FreeformPatch], fits: Mask, poses: Array, count: int, take: int
+        self, faces: list[FreeformPatch], fits: Mask, poses: Array, asked: _Demands
     ) -> list[int]:
         """The most informative faces; if too few fit beside them, starting from a set that fits."""
         wanted = touches_on(faces, poses)
@@ -242,6 +231,7 @@ class BodyChoice:
         if not len(wanted):
             return []
         W, objective = self.criterion.rows(wanted), self.criterion.objective
+        count, take = asked.count, asked.take
         group = np.searchsorted([int(p.name) for p in faces], wanted.feature.astype(np.int64))
         chosen = best_groups(objective, W, group, count, take, apart=fits)
         if len(chosen) < count:

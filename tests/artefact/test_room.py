@@ -95,7 +95,7 @@ def built(choice: BodyChoice):
     balls = list(choice.room.balls)
     poses = AROUND if choice.from_side else np.array([[0.0, a] for a in (-1.5, 0.0, 1.5)])
     touches = joined([each_at(ball, sphere_grid(4), poses) for ball in balls])
-    return choice._build(balls, "trial", "", touches, choice.room.wanted, 4)
+    return choice.standard("trial", "", balls, touches, choice.room.wanted, 0)
 
 
 @pytest.fixture(autouse=True)
@@ -103,7 +103,7 @@ def alike(monkeypatch):
     monkeypatch.setattr(
         BodyChoice,
         "_choose_faces",
-        lambda _, there, count, __: most_side_by_side(there.fits, count),
+        lambda _, there, asked: most_side_by_side(there.fits, asked.count),
     )
 
 
