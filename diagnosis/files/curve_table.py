@@ -55,7 +55,7 @@ def curve_entries(
     for effect in effects:
         count = len(effect.parameters)
         law = law_of(effect)
-        if law is not None and law.is_curve_alone:
+        if law is not None and law.is_curve_alone and not law.is_surface:
             rows = slice(start, start + count)
             out += _curves(law, theta[rows], covariance[rows, rows])
         start += count

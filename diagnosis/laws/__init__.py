@@ -20,6 +20,7 @@ from matstd.diagnosis.laws.estimates import fit_beside as fit_beside
 from matstd.diagnosis.laws.estimates import partial_residual as partial_residual
 from matstd.diagnosis.laws.estimates import places as places
 from matstd.diagnosis.laws.estimates import second_run as second_run
+from matstd.diagnosis.laws.estimates import surface_of as surface_of
 from matstd.diagnosis.laws.learn import learn_laws as learn_laws
 from matstd.diagnosis.laws.learnt import Learning as Learning
 from matstd.diagnosis.laws.learnt import LearntLaw as LearntLaw

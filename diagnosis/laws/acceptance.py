@@ -94,6 +94,23 @@ def predicts_better(before: Fit, after: Fit) -> bool:
     return True
 
 
+def prediction_odds(one: Fit, other: Fit) -> float:
+    """Log odds of a model against another by touches left out, by poses and by times: the lesser.
+
+    ``log p = -1/2 (N log s^2 + log det V)``, V the covariance of the errors of all blocks and s^2
+    what they are over it: a vague prediction is charged for being vague. Both on the same rows.
+    """
+    return min(
+        _log_predictive(one, groups(one)) - _log_predictive(other, groups(other))
+        for groups in (pose_groups, time_groups)
+    )
+
+
+def _log_predictive(fit: Fit, groups: Sequence[IntArray]) -> float:
+    found = left_out(fit.solution.Q, fit.solution.residual, _within(fit, groups))
+    return -0.5 * (len(found.error) * 2.0 * np.log(found.rms * fit.noise.factor) + found.log_det)
+
+
 def holds_between(before: Fit, after: Fit, law: Law) -> bool:
     """Whether a law of two variables predicts where both have values that were left out together.
 

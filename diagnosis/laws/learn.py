@@ -16,10 +16,12 @@ from matstd.diagnosis.laws.acceptance import (
     holds_where_largest,
     memory_left,
     memory_score,
+    prediction_odds,
     predicts_better,
     stands_beside_memory,
 )
 from matstd.diagnosis.laws.beginning import Beginning, log_odds
+from matstd.diagnosis.laws.formulas import Candidate
 from matstd.diagnosis.laws.learnt import Learning, LearntLaw, Rival
 from matstd.diagnosis.laws.library import nearest_of_library
 from matstd.diagnosis.laws.policy import POLICY, LawPolicy
@@ -147,14 +149,15 @@ def _tried(
     is_searched: bool,
 ) -> _Tried:
     """The next law beside others, in white noise: the first of a search that predicts."""
-    searched = search_law(Space.of(current), ground, policy)
+    white = replace(start, memory=None)
+    searched = _searched(white, laws, current, ground, policy)
     first: _Tried | None = None
     taken = {law.name for law in laws}
     for _ in range(MOST_TRIED):
         best = _learnt(searched, taken)
         if best is None:
             break
-        fit = replace(start, memory=None).fitted([*laws, best.law])
+        fit = white.fitted([*laws, best.law])
         refusal = _refusal(start, laws, best, (current, fit), policy)
         if refusal is None:
             nearest = nearest_of_library(searched.space)
@@ -167,6 +170,32 @@ def _tried(
             break
         taken.add(best.law.name)
     return first or _Tried(None, current, current, None)
+
+
+def _searched(
+    white: Beginning, laws: Sequence[Law], fit: Fit, ground: Ground, policy: LawPolicy
+) -> Searched:
+    """What a search finds beside laws, first the law that predicts touches left out.
+
+    A formula is to predict them at least as well as a curve, and as a surface: a bump times a
+    plateau imitated a ring, and predicted a second run with 1.43 µm instead of 1.33 without a law.
+    """
+    found = search_law(Space.of(fit), ground, policy)
+    if not found.smooth:
+        return found
+
+    def odds(smooth: Candidate) -> float:
+        pair = [_usual(c.law, c.bearer.alike) for c in (smooth, found.candidates[0])]
+        fits = [white.fitted([*laws, law]) for law in pair]
+        gross = replace(fits[0].gross, rows=fits[0].gross.rows | fits[1].gross.rows)
+        return prediction_odds(*(white.fitted([*laws, law], gross=gross) for law in pair))
+
+    taken = {law.name for law in laws}
+    new = [c for c in found.smooth if _usual(c.law, c.bearer.alike).name not in taken]
+    best = {c.law.is_surface: c for c in reversed(new)}.values()
+    ranked = sorted([(odds(c), c) for c in best], key=lambda one: -one[0])
+    is_better = ranked and ranked[0][0] > policy.min_score
+    return found.with_first(*ranked[0][::-1]) if is_better else found
 
 
 def _alike(gross: GrossErrors) -> Mask:
@@ -230,7 +259,8 @@ def _each_anew(
         others = set(range(len(laws))) - {i}
         beside = [laws[k].law for k in sorted(others)]
         base = white.fitted(beside)
-        best = _learnt(search_law(Space.of(base), ground, policy), {law.name for law in beside})
+        searched = _searched(white, beside, base, ground, policy)
+        best = _learnt(searched, {law.name for law in beside})
         if best is None or best.score < policy.min_score:
             continue
         is_same = best.law.name == laws[i].law.name

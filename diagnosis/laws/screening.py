@@ -30,13 +30,16 @@ from matstd.twin.laws import (
     drivers,
     grid,
     shapes_of,
+    surface_products,
+    surface_waves,
 )
 from matstd.twin.record import Touches
 
 LENGTHS = (0.03, 0.1, 0.3)  # correlation lengths of curves, as shares of the range
-SURFACE_WAVES = 6  # waves of either variable of a surface, from none on
+SCAN_WAVES, SCAN_LENGTH = 6, 0.2
+"""Waves of either variable of a surface that is scanned, from none on, and its length."""
 
-SURFACE_LENGTH = 0.2
+SURFACE_LENGTHS = (0.05, 0.1, 0.2, 0.4)  # of a surface that is a law
 
 DOMAIN_MARGIN = 0.1
 """Share of the range by which the domain of a curve exceeds the values on either side."""
@@ -109,7 +112,7 @@ def surfaces_of(field: Field) -> Curves:
             (A, wa), (B, wb) = bases[one.name], bases[other.name]
             W = (A[:, :, None] * B[:, None, :]).reshape(len(A), -1)[:, 1:]
             w = (wa[:, None] * wb).reshape(1, -1)[:, 1:]
-            waves.append(Waves((one, other), W, w, (SURFACE_LENGTH,)))
+            waves.append(Waves((one, other), W, w, (SCAN_LENGTH,)))
     return Curves.of(field.bearers, waves)
 
 
@@ -162,6 +165,22 @@ def evidence_of(space: Space, C: Array, waves: Waves) -> tuple[float, float, flo
     return float(found.value[0]), float(found.explained[0]), length, size
 
 
+def smooth_surface(
+    space: Space, field: Field, C: Array, drivers: Sequence[Driver]
+) -> tuple[float, float, tuple[float, ...]]:
+    """Log evidence of a surface at columns of a carrier (N, k), what it explains, and its places.
+
+    The correlation length is the same share of both domains.
+    """
+    x, y = (field.x[driver.name] for driver in drivers)
+    one, other = (field.domain(driver) for driver in drivers)
+    B = surface_products(x, y, (one, other))
+    weights = np.array([surface_waves(length) for length in SURFACE_LENGTHS])
+    waves = Waves(tuple(drivers), B, weights, SURFACE_LENGTHS)
+    evidence, explained, length, size = evidence_of(space, C, waves)
+    return evidence, explained, (*one, length, size, *other, length, 1.0)
+
+
 def _is_sensible(one: Driver, other: Driver) -> bool:
     """Whether a law of both is to be expected: one of them is a reading or a direction."""
     moved = ("linear", "rotary", "sign")
@@ -182,8 +201,8 @@ def _surface_waves(field: Field, driver: Driver) -> tuple[Array, Array]:
         return np.stack([one, *waves], axis=1), np.array([1.0, 1.0, 1.0, 0.7, 0.7, 0.4, 0.4])
     low, high = field.domain(driver)
     share = (x - low) / (high - low)
-    k = np.arange(SURFACE_WAVES)
-    weight = 1.0 / (1.0 + (np.pi * k * SURFACE_LENGTH) ** 2)
+    k = np.arange(SCAN_WAVES)
+    weight = 1.0 / (1.0 + (np.pi * k * SCAN_LENGTH) ** 2)
     return np.cos(np.pi * share[:, None] * k), weight / weight[1]
 
 

@@ -32,6 +32,7 @@ from matstd.diagnosis.laws.screening import (
     modulations,
     rough_grids,
     rough_shapes,
+    smooth_surface,
     surfaces_of,
     waves_of,
 )
@@ -64,6 +65,8 @@ UNUSUAL = ("power", "saturation", "dead-band", "pulse", "saw", "quad-about", "pl
 DRIFT = "time"  # variable of an unrecorded driver, of which only smoothness in time is assumed
 QUICK_PERIODS = 8.0  # periods within the range from which a sine is quick
 
+SURFACES = 4
+
 ROUGH, MODULATED = 24, 2
 """Shapes of either kind that no curve shows, and those of which a second variable is looked for."""
 
@@ -93,6 +96,17 @@ class Searched:
     curve: float  # best log evidence of a law without a formula, charged as the candidates are
     # the same of a curve over time alone: a driver that is smooth and was not recorded
     drift: float
+    smooth: tuple[Candidate, ...]  # laws without a formula, where the first candidate has one
+
+    def with_first(self, smooth: Candidate, odds: float) -> "Searched":
+        """A law without a formula first, those above it behind by log odds of a prediction."""
+        behind = self.candidates[0].score - smooth.score + odds
+        ranked = [
+            replace(c, score=c.score - behind) if c.score > smooth.score else c
+            for c in (*self.smooth, *self.candidates)
+        ]
+        ranked.sort(key=lambda c: -c.score)
+        return replace(self, candidates=tuple(ranked), smooth=())
 
 
 @dataclass(frozen=True, eq=False)
@@ -145,15 +159,17 @@ def search_law(space: Space, ground: Ground, policy: LawPolicy) -> Searched:
     drifts = [f for f in one if f.drivers[0].name == DRIFT][:1]
     beside = [f for f in drifts if all(f is not other for other in one[:3])]
     curves = _curves(space, field, [*one[:3], *beside], polished, policy)
-    ranked = sorted(polished, key=lambda c: -c.score)
-    best_curve = max((c.score for c in curves), default=-np.inf)
+    curves += _surfaces(space, field, _gaining(two, one), polished, policy)
+    ranked, curves = (sorted(own, key=lambda c: -c.score) for own in (polished, curves))
+    best_curve = curves[0].score if curves else -np.inf
     if not ranked or best_curve > ranked[0].score:
-        ranked = sorted([*curves, *ranked], key=lambda c: -c.score)
+        ranked, curves = sorted([*curves, *ranked], key=lambda c: -c.score), []
     ranked = _shorter_first(ranked, policy)
     return Searched(
         space=space,
         candidates=tuple(ranked),
-        curve=float(best_curve),
+        curve=best_curve,
+        smooth=tuple(curves),
         drift=drifts[0].evidence - policy.tried_singles if drifts else -np.inf,
     )
 
@@ -359,6 +375,36 @@ def _curves(
                 charge = policy.tried_products + space.charge(len(first.factor.shape.free))
                 score = evidence - charge
                 out.append(_curve(field, c.bearer, driver, size, explained, score, first))
+    return out
+
+
+def _surfaces(
+    space: Space,
+    field: Field,
+    two: Sequence[Found],
+    formulas: Sequence[Candidate],
+    policy: LawPolicy,
+) -> list[Candidate]:
+    """Laws without a formula over two variables that do not separate: a ring, a diagonal.
+
+    Over the variables of the best products, since a screened surface has few waves.
+    """
+    ranked = sorted(formulas, key=lambda c: -c.score)
+    products = [(c.bearer, c.law.drivers) for c in ranked if len(c.law.drivers) == 2]
+    tried = [*products[:SURFACES], *((f.bearer, f.drivers) for f in two[:SURFACES])]
+    each = {
+        (bearer.carrier.name, *sorted(d.name for d in drivers)): (bearer, drivers)
+        for bearer, drivers in tried
+        if bearer.carrier.count == 1
+        and all(d.name != DRIFT and waves_of(field, d).lengths[0] > 0.0 for d in drivers)
+    }
+    out = list[Candidate]()
+    for bearer, drivers in each.values():
+        evidence, explained, places = smooth_surface(space, field, bearer.C, drivers)
+        factors = tuple(Factor(SHAPES["surface"], d) for d in drivers)
+        law = Law(bearer.carrier, factors, places)
+        score = evidence - policy.tried_products
+        out.append(Candidate(bearer, law, explained, len(law.parameters), score))
     return out
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from matstd.diagnosis.laws import Estimate, Learning, amplitudes, curve_of, places
 from matstd.report.laws.law_words import amplitude_words, formula_words, place_words, size_words
 from matstd.twin.frames import Array
-from matstd.twin.laws import Driver, Law
+from matstd.twin.laws import SURFACE_WAVES, Driver, Law, surface_waves
 from matstd.twin.units import UM, URAD
 
 HEAD = '''"""{title}
@@ -151,8 +151,11 @@ def _parameters(learning: Learning, law: Law) -> list[Estimate]:
     found = amplitudes(learning, law)
     if not law.is_curve_alone:
         return found
-    k = next(k for k, factor in enumerate(law.factors) if factor.shape.word == "curve")
-    size = float(np.abs(_curve(learning, law, k)[1]).max())
+    if law.is_surface:
+        size = _surface(learning, law)[1]
+    else:
+        k = next(k for k, factor in enumerate(law.factors) if factor.shape.word == "curve")
+        size = float(np.abs(_curve(learning, law, k)[1]).max())
     unit = law.carrier.unit
     return [Estimate(word or "amplitude", size, None, unit) for word in law.carrier.words]
 
@@ -170,6 +173,9 @@ def _body(learning: Learning, law: Law, estimates: Sequence[Estimate], is_entry:
     """Lines of the method: the variables, the shapes, and what they move."""
     names = {driver: _identifier(driver.name) for driver in law.drivers}
     lines = [f"{names[driver]} = {_variable(driver.name)}" for driver in law.drivers]
+    if law.is_surface:
+        lines += _series(learning, law, list(names.values()))
+        return "\n".join(f"        {line}" for line in lines)
     shapes = _shapes(learning, law, estimates, names)
     if len(shapes) == 1:
         products = _tuple(shapes[0], 8)
@@ -253,11 +259,45 @@ def _curve(learning: Learning, law: Law, k: int) -> tuple[Array, Array]:
     return x, curve_of(learning, law, law.factors[k].driver, x)[0]
 
 
+def _surface(learning: Learning, law: Law) -> tuple[Array, float]:
+    """Amplitudes of the waves of a surface, (12, 12), and its largest value at the touches."""
+    theta = learning.after.theta[learning.after.of_effect(law.name)]
+    length, size = law.places[2:4]
+    C = np.zeros(SURFACE_WAVES.max(axis=0) + 1)
+    C[tuple(SURFACE_WAVES.T)] = size * surface_waves(length) * theta[: len(SURFACE_WAVES)]
+    value = np.stack(law.amounts(learning.after.run.touches), axis=1) @ theta
+    return C, float(np.abs(value).max())
+
+
+def _series(learning: Learning, law: Law, names: Sequence[str]) -> list[str]:
+    """Lines that give a surface as products of cosines, its largest value 1, dying away outside."""
+    C, size = _surface(learning, law)
+    domains = [law.places[own][:2] for _, own in law.parts]
+    shares = [
+        f"({x} - {low:.6g}) / {high - low:.6g}"
+        for x, (low, high) in zip(names, domains, strict=True)
+    ]
+    return [
+        f"shares = np.array([{', '.join(shares)}])",
+        "inside = np.clip(shares, 0.0, 1.0)",
+        f"one, other = np.cos(np.pi * inside[..., None] * np.arange({len(C)}))",
+        f"beyond = {np.sqrt(3.0) / law.places[2]:.6g} * np.abs(shares - inside)",
+        "kept = np.prod((1.0 + beyond) * np.exp(-beyond), axis=0)",
+        f"C = np.array([\n{_rows(C.ravel() / size, len(C))},\n        ]).reshape({len(C)}, -1)",
+        'return (kept * np.einsum("nk,kl,nl->n", one, C, other),)',
+    ]
+
+
 def _table(learning: Learning, law: Law, k: int, x: str) -> str:
     """A curve without a formula as a table to be interpolated in, its largest value 1."""
     at, y = _curve(learning, law, k)
     knots = f"np.linspace({at[0]:.6g}, {at[-1]:.6g}, {len(at)})"
-    values = [f"{v:.3f}" for v in y / max(float(np.abs(y).max()), 1e-300)]
-    rows = [", ".join(values[i : i + 10]) for i in range(0, len(values), 10)]
-    table = ",\n".join(f"{' ' * 12}{row}" for row in rows)
+    table = _rows(y / max(float(np.abs(y).max()), 1e-300))
     return f"np.interp({x}, {knots}, [\n{table},\n        ])"
+
+
+def _rows(values: Array, count: int = 10) -> str:
+    """Numbers of a table, so many in a line."""
+    words = [f"{v:.3f}" for v in values]
+    rows = [", ".join(words[i : i + count]) for i in range(0, len(words), count)]
+    return ",\n".join(f"{' ' * 12}{row}" for row in rows)

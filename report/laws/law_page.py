@@ -6,9 +6,17 @@ from typing import Any
 
 import numpy as np
 
-from matstd.diagnosis.laws import Estimate, Learning, LearntLaw, SecondRun, amplitudes, places
+from matstd.diagnosis.laws import (
+    Estimate,
+    Learning,
+    LearntLaw,
+    SecondRun,
+    amplitudes,
+    places,
+    surface_of,
+)
 from matstd.diagnosis.next_visit import VisitPlan
-from matstd.report.laws.curves import LawCurve, axis_label, law_curve
+from matstd.report.laws.curves import MIN_LEVER, LawCurve, axis_label, law_curve
 from matstd.report.laws.law_words import (
     amplitude_words,
     carrier_words,
@@ -31,6 +39,7 @@ from matstd.report.layout import KeyFigure, LiveView, Page, Picture, Section, Ta
 from matstd.report.numbers import digits, microns, odds_words, sentence
 from matstd.report.style import (
     BLUE,
+    DIVERGING,
     FAINT,
     INK,
     NEUTRAL,
@@ -42,7 +51,9 @@ from matstd.report.style import (
 )
 from matstd.twin.frames import Mask
 from matstd.twin.laws import Law
-from matstd.twin.units import UM
+from matstd.twin.units import UM, URAD
+
+SURFACE_POINTS = 80  # points of either variable at which a surface is drawn
 
 _WHAT = (
     "A law states what the remainder depends on and how it looks. It has no cause: that is for you "
@@ -227,6 +238,8 @@ def draw_law(learning: Learning, law: Law) -> Figure:
 
     A touch feels the carrier by a lever: its residual with the law put back is divided by it.
     """
+    if law.is_surface:
+        return _draw_surface(learning, law)
     drawn = figure(3.4)
     every = np.atleast_1d(drawn.subplots(1, len(law.drivers)))
     for ax, driver in zip(every, law.drivers, strict=True):
@@ -234,6 +247,41 @@ def draw_law(learning: Learning, law: Law) -> Figure:
     unit = "µrad" if law.carrier.is_angular else "µm"
     every[0].set_ylabel(f"{law.carrier.name} in {unit}")
     every[0].legend(fontsize=8, frameon=False)
+    return drawn
+
+
+def _draw_surface(learning: Learning, law: Law) -> Figure:
+    """A law over two variables: the touches with it put back, the law, and its uncertainty."""
+    fit = learning.after
+    values = [driver.values(fit.run.touches) for driver in law.drivers]
+    axes_of = [axis_label(d, v[fit.used]) for d, v in zip(law.drivers, values, strict=True)]
+    lines = [np.linspace(v[fit.used].min(), v[fit.used].max(), SURFACE_POINTS) for v in values]
+    x, y = (v.ravel() for v in np.meshgrid(*lines))
+    scale, unit = (URAD, "µrad") if law.carrier.is_angular else (UM, "µm")
+    value, u = (v.reshape(SURFACE_POINTS, -1) / scale for v in surface_of(learning, law, x, y))
+    at_touches = surface_of(learning, law, *values)[0] / scale
+    lever = law.carrier.columns(fit.run.touches)[:, 0]
+    seen = fit.used & (np.abs(lever) > MIN_LEVER * np.abs(lever).max())
+    touched = at_touches[seen] + fit.residual[seen] / lever[seen] / scale
+    limit = float(np.abs(at_touches[fit.used]).max())
+    style: dict[str, Any] = {"cmap": DIVERGING, "vmin": -limit, "vmax": limit}
+    x, y = (v / per for v, (_, per) in zip(lines, axes_of, strict=True))
+    drawn = figure(3.6)
+    panels = drawn.subplots(1, 3, sharex=True, sharey=True)
+    points = [v[seen] / per for v, (_, per) in zip(values, axes_of, strict=True)]
+    panels[0].scatter(*points, c=touched, s=9.0, **style)
+    law_map = panels[1].pcolormesh(x, y, value, shading="gouraud", **style)
+    u_map = panels[2].pcolormesh(x, y, u, shading="gouraud", cmap="viridis", vmin=0.0)
+    titles = "touches, law put back", "law", "its standard uncertainty"
+    for ax, title in zip(panels, titles, strict=True):
+        ax.set_title(title, fontsize=9.5, loc="left", color=INK)
+        ax.set_xlabel(axes_of[0][0])
+        plain(ax)
+    panels[0].set_ylabel(axes_of[1][0])
+    drawn.colorbar(law_map, ax=list(panels[:2]), pad=0.02).set_label(
+        f"{law.carrier.name} in {unit}"
+    )
+    drawn.colorbar(u_map, ax=panels[2], pad=0.04).set_label(f"u in {unit}")
     return drawn
 
 

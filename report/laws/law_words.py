@@ -72,6 +72,7 @@ _SHAPES = {
     "beyond": "what is not known beyond the probed range",
     "course": "what is not known of a driver that was not recorded",
     "curve": "a smooth curve without a formula",
+    "surface": "a smooth surface without a formula",
 }
 FEW_TOUCHES = 60  # below it a run leaves few degrees of freedom beside geometry and set-ups
 _EDGES = ("x0", "x1", "x2")  # parameters of shapes that are values of the variable
@@ -117,6 +118,9 @@ def carrier_words(carrier: Carrier) -> str:
 
 def formula_words(law: Law) -> str:
     """`EZX = a exp(-((Y - x0)/w)^2)`, with the numbers that no run determines."""
+    if law.is_surface:
+        over = listed([driver.name for driver in law.drivers])
+        return f"{law.carrier.name} = {law.factors[0].shape.formula} {over}"
     parts = []
     for factor, own in law.parts:
         text, _, u = factor.shape.formula.partition(", u = ")
@@ -190,9 +194,7 @@ def law_sentence(learning: Learning, one: LearntLaw) -> str:
     """What was learnt: where it moves the tool, what carries it, its shape with all numbers."""
     law, numbers, size = one.law, places(learning, one.law), _size(learning, one.law)
     is_plain = len(law.factors) == 1 and not law.is_curve_alone
-    what = " times ".join(
-        _shape_words(factor, numbers[own], size if is_plain else "") for factor, own in law.parts
-    )
+    what = _shapes_words(law, numbers, size if is_plain else "")
     what += "" if is_plain else f", {size}"
     return f"{_carried_words(law.carrier, one.alike)}: {what}".replace("  ", " ") + "."
 
@@ -200,8 +202,15 @@ def law_sentence(learning: Learning, one: LearntLaw) -> str:
 def short_words(law: Law) -> str:
     """A law without its numbers: `EBY as a parabola over the temperature spindle`."""
     fixed = [Estimate(n, v, None, "1") for n, v in law.tuning.items()]
-    shapes = " times ".join(_shape_words(factor, fixed[own]) for factor, own in law.parts)
-    return f"{carrier_words(law.carrier)} as {shapes}"
+    return f"{carrier_words(law.carrier)} as {_shapes_words(law, fixed)}"
+
+
+def _shapes_words(law: Law, numbers: Sequence[Estimate], size: str = "") -> str:
+    """Shapes of a law in words; a surface is one over both variables."""
+    if law.is_surface:
+        one, other = (variable_words(driver) for driver in law.drivers)
+        return f"{_SHAPES['surface']} over {one} and {other}"
+    return " times ".join(_shape_words(factor, numbers[own], size) for factor, own in law.parts)
 
 
 def _carried_words(carrier: Carrier, alike: Sequence[Carrier]) -> str:

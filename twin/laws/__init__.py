@@ -23,3 +23,7 @@ from matstd.twin.laws.shape import SHAPES as SHAPES
 from matstd.twin.laws.shape import Shape as Shape
 from matstd.twin.laws.shape import curve_columns as curve_columns
 from matstd.twin.laws.shape import play as play
+from matstd.twin.laws.surface import SURFACE_WAVES as SURFACE_WAVES
+from matstd.twin.laws.surface import surface_columns as surface_columns
+from matstd.twin.laws.surface import surface_products as surface_products
+from matstd.twin.laws.surface import surface_waves as surface_waves

@@ -121,6 +121,7 @@ def grid(shape: Shape, driver: Driver, x: Array) -> Array:
         "half-wave": [(p,) for p in 2.0 * _phases()],
         "hysteresis": [(w, scale) for w in span * np.geomspace(0.01, 0.4, 10)],
         "curve": [(low - 0.1 * span, high + 0.1 * span, 0.1, 10e-3)],
+        "surface": [(low - 0.1 * span, high + 0.1 * span, 0.2, 10e-3)],
         "course": [(low, high, 0.1, 10e-3)],
         "beyond": [(low, high, 0.3, 10e-3)],
         "play-quad": [(driver.zero, w, scale) for w in span * np.geomspace(0.01, 0.4, 10)],

@@ -7,6 +7,7 @@ amplitude times one or two shapes, each a function of one variable:
     law(EXY,lin T-scaleX,quad Y)    EXY = a u_T u_Y^2
     law(shift,exp since-setup)      the standard moves by (a, b, c) exp(-t/tau)
     law(EBY,curve Y)           a smooth curve without a formula
+    law(EZX,surface X,surface Y)    a smooth surface over both
     law(EZX,beyond Y)          what a law may do beyond the Y that were probed: zero ± its size
     law(EZX,course time)       what a driver that was not recorded may do in another run: the same
 
@@ -27,6 +28,7 @@ from matstd.twin.laws.carrier import BIAS, Carrier, carrier_of
 from matstd.twin.laws.driver import CLOCK, Driver, driver_of
 from matstd.twin.laws.grids import grid
 from matstd.twin.laws.shape import SHAPES, Shape, curve_waves
+from matstd.twin.laws.surface import SURFACE_WORDS, surface_columns
 from matstd.twin.machine import Chain, Symbol
 from matstd.twin.model import Effect, Inner, Kind, Parameter, Term, Title
 from matstd.twin.record import Touches
@@ -44,6 +46,8 @@ it: an exponential whose time constant is below 0.46 of the run."""
 
 COURSE_TIME, COURSE_LENGTH = 3.0 * HOUR, 0.05
 """Length of a run, and share of it within which a driver that was not recorded changes."""
+
+FREE_FORMS = ("curve", "surface")  # shapes without a formula
 
 MARGINS = ("beyond", "course")
 """Shapes of what is not known of a law: zero, with its size as uncertainty."""
@@ -114,7 +118,12 @@ class Law:
     @property
     def is_curve_alone(self) -> bool:
         """Whether it has no formula."""
-        return any(f.shape.word == "curve" for f in self.factors)
+        return any(f.shape.word in FREE_FORMS for f in self.factors)
+
+    @property
+    def is_surface(self) -> bool:
+        """Whether it is a smooth surface over two variables, which no product of two shapes is."""
+        return self.factors[0].shape.word == "surface"
 
     @property
     def is_margin(self) -> bool:
@@ -227,13 +236,16 @@ class Law:
 
     @property
     def _coefficients(self) -> list[str]:
-        words = [""]
-        for factor in self.factors:
+        words = list(SURFACE_WORDS) if self.is_surface else [""]
+        for factor in () if self.is_surface else self.factors:
             words = [f"{w} {c}".strip() for w in words for c in factor.shape.coefficients]
         return words
 
     def amounts(self, touches: Touches) -> list[Array]:
         """What the carrier does per unit of every coefficient, (N,) each."""
+        if self.is_surface:
+            x, y = (driver.values(touches) for driver in self.drivers)
+            return surface_columns(x, y, *self.places)
         out = [np.ones(len(touches))]
         for factor, own in self.parts:
             found = factor.shape.values(factor.driver.values(touches), *self.places[own])
@@ -339,6 +351,8 @@ def make(chain: Chain, arguments: Sequence[str]) -> Law:
         if word not in SHAPES:
             raise refusal(KIND.usage, arguments, f"a shape of {', '.join(SHAPES)}")
         factors.append(Factor(SHAPES[word], driver_of(name.strip(), chain)))
+    if len({f.driver for f in factors if f.shape.word == "surface"}) == 1:
+        raise refusal(KIND.usage, arguments, "a surface over two variables")
     places = [v for f in factors for v in _middle(f, chain)]
     return Law(carrier_of(arguments[0].strip(), chain), tuple(factors), tuple(places), True)
 

@@ -96,19 +96,20 @@ def _curve(x: Array, low: float, high: float, length: float, size: float) -> Seq
     of its value there (the correlation of the same process), and two coefficients of their own,
     which no touch within the domain determines, add the variance that is lost: ``1 - k^2``.
     """
-    kept = _kept(x, low, high, length)
+    kept = kept_beyond(x, low, high, length)
     waves = size * kept[:, None] * curve_columns(x, low, high, length)
     return [*waves.T, *_beyond(x, low, high, length, size)]
 
 
-def _kept(x: Array, low: float, high: float, length: float) -> Array:
+def kept_beyond(x: Array, low: float, high: float, length: float) -> Array:
+    """Share of a curve that is left beyond its domain; 1 within, (N,)."""
     z = np.sqrt(3.0) * np.maximum(np.maximum(low - x, x - high), 0.0) / ((high - low) * length)
     return np.asarray((1.0 + z) * np.exp(-z))
 
 
 def _beyond(x: Array, low: float, high: float, length: float, size: float) -> Sequence[Array]:
     """Two coefficients of order one that act beyond the domain alone, on either side."""
-    new = size * np.sqrt(np.maximum(1.0 - _kept(x, low, high, length) ** 2, 0.0))
+    new = size * np.sqrt(np.maximum(1.0 - kept_beyond(x, low, high, length) ** 2, 0.0))
     return new * (x < low), new * (x > high)
 
 
@@ -217,6 +218,7 @@ SHAPES: dict[str, Shape] = {
                "((play(x, {w}) - {zero}) / {unit}) ** 2", "zero", "w", "unit", remembers=True),
         _shape("curve", "smooth curve without a formula, dying away beyond its domain", (),
                *_CURVE, values=_curve, coefficients=_FREE_CURVE),
+        _shape("surface", "smooth surface without a formula over", (), *_CURVE, values=_curve),
         _shape("course", "what a driver that was not recorded does in another run", (),
                *_CURVE, values=_curve, coefficients=_FREE_CURVE),
         _shape("beyond", "what is not known beyond the domain of a law", (), *_CURVE,
