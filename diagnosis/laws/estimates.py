@@ -69,8 +69,7 @@ def partial_residual(learning: Learning, law: Law) -> tuple[Array, Array]:
 def curve_of(learning: Learning, law: Law, driver: Driver, x: Array) -> tuple[Array, Array]:
     """A law over one of its variables, in units of the carrier, with its uncertainty.
 
-    A shape of another variable is held where it is largest, a surface where it moves a touch most.
-    The uncertainty is that of amplitudes
+    A shape of another variable is held where it is largest. The uncertainty is that of amplitudes
     and parameters together, by differences; of a curve without a formula that of its form beside a
     parabola, which set-ups and geometry take up.
 
@@ -81,10 +80,6 @@ def curve_of(learning: Learning, law: Law, driver: Driver, x: Array) -> tuple[Ar
         Values and standard uncertainty, (M,) each, mm or rad.
     """
     fit = learning.tangent
-    if law.is_surface:
-        largest = int(np.argmax(np.abs(partial_residual(learning, law)[1])))
-        at = {d: np.full(len(x), d.values(fit.run.touches)[largest]) for d in law.drivers}
-        return surface_of(learning, law, *(at | {driver: x}).values())
     theta = learning.after.theta[learning.after.of_effect(law.name)]
     tangents = [t for t in fit.tangents if t.effect.name == law.name]
     rows = np.concatenate(
@@ -117,8 +112,8 @@ def curve_of(learning: Learning, law: Law, driver: Driver, x: Array) -> tuple[Ar
 def surface_of(learning: Learning, law: Law, x: Array, y: Array) -> tuple[Array, Array]:
     """A smooth surface over its two variables, in units of the carrier, with its uncertainty.
 
-    The uncertainty is that of its form beside a surface of second degree, which set-ups and
-    geometry take up.
+    The uncertainty is that of its form beside a surface of second degree through the touches, which
+    set-ups and geometry take up.
 
     Args:
         x: Values of the first variable, (M,), base unit.
@@ -129,10 +124,14 @@ def surface_of(learning: Learning, law: Law, x: Array, y: Array) -> tuple[Array,
     """
     fit = learning.tangent
     place = fit.of_effect(law.name)
-    A = np.stack(surface_columns(x, y, *law.places), axis=1)
-    u, v = ((w - w.mean()) / (float(np.ptp(w)) or 1.0) for w in (x, y))
-    plain = np.stack([np.ones(len(x)), u, v, u * u, u * v, v * v], axis=1)
-    form = A - plain @ np.linalg.lstsq(plain, A, rcond=None)[0]
+    seen = [driver.values(fit.run.touches)[fit.used] for driver in law.drivers]
+
+    def plain(*at: Array) -> Array:
+        u, v = ((a - s.mean()) / float(np.ptp(s)) for a, s in zip(at, seen, strict=True))
+        return np.stack([np.ones(len(u)), u, v, u * u, u * v, v * v], axis=1)
+
+    A, there = (np.stack(surface_columns(*at, *law.places), axis=1) for at in ((x, y), seen))
+    form = A - plain(x, y) @ np.linalg.lstsq(plain(*seen), there, rcond=None)[0]
     variance = np.einsum("np,pk,nk->n", form, fit.covariance[place, place], form)
     theta = learning.after.theta[learning.after.of_effect(law.name)]
     return A @ theta, np.sqrt(np.maximum(variance, 0.0))

@@ -277,13 +277,15 @@ def _series(learning: Learning, law: Law, names: Sequence[str]) -> list[str]:
         f"({x} - {low:.6g}) / {high - low:.6g}"
         for x, (low, high) in zip(names, domains, strict=True)
     ]
+    each = (", ".join(f"{v:4.0f}" for v in row) for row in 1e3 * C / size)
+    rows = ",\n".join(f"{' ' * 12}[{row}]" for row in each)
     return [
         f"shares = np.array([{', '.join(shares)}])",
         "inside = np.clip(shares, 0.0, 1.0)",
         f"one, other = np.cos(np.pi * inside[..., None] * np.arange({len(C)}))",
         f"beyond = {np.sqrt(3.0) / law.places[2]:.6g} * np.abs(shares - inside)",
         "kept = np.prod((1.0 + beyond) * np.exp(-beyond), axis=0)",
-        f"C = np.array([\n{_rows(C.ravel() / size, len(C))},\n        ]).reshape({len(C)}, -1)",
+        f"C = 1e-3 * np.array([\n{rows},\n        ])",
         'return (kept * np.einsum("nk,kl,nl->n", one, C, other),)',
     ]
 
@@ -292,12 +294,7 @@ def _table(learning: Learning, law: Law, k: int, x: str) -> str:
     """A curve without a formula as a table to be interpolated in, its largest value 1."""
     at, y = _curve(learning, law, k)
     knots = f"np.linspace({at[0]:.6g}, {at[-1]:.6g}, {len(at)})"
-    table = _rows(y / max(float(np.abs(y).max()), 1e-300))
+    values = [f"{v:.3f}" for v in y / max(float(np.abs(y).max()), 1e-300)]
+    rows = [", ".join(values[i : i + 10]) for i in range(0, len(values), 10)]
+    table = ",\n".join(f"{' ' * 12}{row}" for row in rows)
     return f"np.interp({x}, {knots}, [\n{table},\n        ])"
-
-
-def _rows(values: Array, count: int = 10) -> str:
-    """Numbers of a table, so many in a line."""
-    words = [f"{v:.3f}" for v in values]
-    rows = [", ".join(words[i : i + count]) for i in range(0, len(words), count)]
-    return ",\n".join(f"{' ' * 12}{row}" for row in rows)

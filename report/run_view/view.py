@@ -93,8 +93,8 @@ def _law_sizes(learning: Learning) -> dict[str, str]:
 
 
 def _curves(learning: Learning) -> dict[str, list[LawCurve]]:
-    """Of every law, over each of its variables."""
-    laws = [one.law for one in learning.laws]
+    """Of every law, over each of its variables; a surface is none over either of them."""
+    laws = [one.law for one in learning.laws if not one.law.is_surface]
     return {law.name: [law_curve(learning, law, driver) for driver in law.drivers] for law in laws}
 
 

@@ -44,8 +44,14 @@ from matstd.diagnosis.laws import (
     learn_remainder,
     places,
     second_run,
+    surface_of,
 )
-from matstd.diagnosis.laws.acceptance import holds_where_largest
+from matstd.diagnosis.laws.acceptance import (
+    holds_where_largest,
+    pose_groups,
+    prediction_odds,
+    time_groups,
+)
 from matstd.diagnosis.laws.beginning import Beginning
 from matstd.diagnosis.laws.formulas import columns_of, scan, spread
 from matstd.diagnosis.laws.learn import _by_rival as weighed
@@ -134,6 +140,52 @@ def test_a_function_of_two_readings_is_not_taken_for_one_of_a_single_reading() -
     own = columns([law], second.touches) @ fit.theta[fit.of_effect(law.name)]
     model = beginning.fit.model
     assert error_left(fit_beside(own, second, model)) > error_left(fit_beside(0.0, second, model))
+
+
+def test_a_ring_about_a_point_is_a_smooth_surface() -> None:
+    """No product of two shapes is one: its centre is as low as all around it."""
+    texts = law_case(np.random.default_rng(1), "hmc1995", "radius", (40.0, 60.0), poses=5)
+    run, second = (read_back(text, MACHINES["hmc1995"]) for text in texts[:2])
+    found = learn_laws(run)
+    (one,) = found.laws
+    law = one.law
+    assert law.name == "law(EXX,surface X,surface Y)"
+    said = second_run(found, second)
+    assert said.learnt**2 < 0.4 * said.without**2
+    touches = found.after.run.touches
+    at = np.array([driver.values(touches) for driver in law.drivers])
+    value, u = surface_of(found, law, *at)
+    theta = found.after.theta[found.after.of_effect(law.name)]
+    assert value == pytest.approx(np.stack(law.amounts(touches), axis=1) @ theta)
+    far = surface_of(found, law, at[0], at[1] + 10.0 * np.ptp(at[1]))
+    assert np.abs(far[0]).max() < 1e-6 * np.abs(value).max()
+    assert far[1].min() > 2.0 * np.median(u)
+
+
+def test_odds_of_a_prediction_are_those_of_normal_densities(stylus) -> None:
+    """Each pose by a fit to all the others, both models on the same rows."""
+    found = stylus[2]
+    fits = found.after, found.beginning.fitted([], gross=found.after.gross)
+
+    def log_density(fit, groups):
+        X, y = fit.X[fit.used], fit.y[fit.used]  # over the noise
+        log = square = 0.0
+        row = np.cumsum(fit.used) - 1
+        for rows in (row[g[fit.used[g]]] for g in groups):
+            others = np.delete(np.arange(len(y)), rows)
+            C = np.linalg.inv(np.eye(X.shape[1]) + X[others].T @ X[others])
+            error = y[rows] - X[rows] @ (C @ X[others].T @ y[others])
+            V = np.eye(len(rows)) + X[rows] @ C @ X[rows].T
+            square += error @ np.linalg.solve(V, error)
+            log -= 0.5 * np.linalg.slogdet(V)[1]
+        return log - 0.5 * len(y) * np.log(square * fit.noise.factor**2 / len(y))
+
+    by_hand = min(
+        log_density(fits[0], groups) - log_density(fits[1], groups)
+        for groups in (pose_groups(fits[1]), time_groups(fits[1]))
+    )
+    assert prediction_odds(*fits) == pytest.approx(by_hand, rel=1e-6)
+    assert by_hand > 10.0
 
 
 @pytest.mark.slow

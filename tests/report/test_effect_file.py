@@ -74,9 +74,12 @@ def test_the_file_computes_what_the_law_computes(name, at, measured, unchanged) 
     np.testing.assert_allclose(found, expected, rtol=1e-3, atol=1e-3 * np.abs(expected).max())
 
 
-def test_a_curve_without_a_formula_is_a_table(measured) -> None:
-    learning, run, law = learnt(measured, "law(EZX,curve Y)", ())
-    effect = loaded(effect_text(learning, "run.csv"), run.touches.chain)
+@pytest.mark.parametrize("name", ["law(EZX,curve Y)", "law(EYX,surface X,surface Y)"])
+def test_a_law_without_a_formula_is_a_table(name, measured) -> None:
+    learning, run, law = learnt(measured, name, ())
+    text = effect_text(learning, "run.csv")
+    assert max(len(line) for line in text.splitlines()) < 100
+    effect = loaded(text, run.touches.chain)
     (size,) = [p.sd for p in effect.parameters]
     expected = (
         columns([law], run.touches) @ learning.after.theta[learning.after.of_effect(law.name)]

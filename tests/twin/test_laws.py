@@ -7,7 +7,7 @@ import pytest
 from made_up import made_up
 
 from matstd.twin.errors import UnknownEffect
-from matstd.twin.laws import SHAPES, driver_of, drivers, grid, play, shapes_of
+from matstd.twin.laws import SHAPES, driver_of, drivers, grid, play, shapes_of, surface_columns
 from matstd.twin.library import owner_of, parse_effect
 from matstd.twin.model import columns
 from matstd.twin.units import UM
@@ -50,6 +50,26 @@ def test_a_temperature_that_turns_once_has_no_trend_that_says_more_than_the_time
     once, twice = at * (1.0 - at), np.sin(3.0 * np.pi * at)
     names = [d.name for d in drivers(replace(touches, temperature={"a": once, "b": twice}))]
     assert [n for n in names if n.startswith("trend-")] == ["trend-T-b"]
+
+
+def test_a_surface_is_alike_in_all_directions_and_dies_away_outside() -> None:
+    """Correlation at one distance along an axis and along the diagonal; variance far outside."""
+    places = (0.0, 100.0, 0.1, 2.0, -50.0, 50.0, 0.1, 1.0)
+
+    def correlation(dx, dy):
+        a, b = np.stack(surface_columns(50.0 + dx, dy, *places), axis=1)
+        return a @ b / np.sqrt(a @ a * (b @ b))
+
+    for d in (5.0, 10.0, 15.0):
+        to = np.array([0.0, d])
+        along = correlation(to, 0.0 * to)
+        assert correlation(0.0 * to, to) == pytest.approx(along, abs=1e-9)
+        assert correlation(to * 0.5**0.5, to * 0.5**0.5) == pytest.approx(along, abs=0.02)
+        assert along < 1.0 - 0.002 * d
+    for x, y in ((-900.0, 0.0), (50.0, 900.0), (900.0, -900.0)):
+        far = np.array(surface_columns(np.array([x]), np.array([y]), *places))
+        assert float((far**2).sum()) == pytest.approx(2.0**2)
+        assert np.count_nonzero(far[-8:]) == 1
 
 
 def test_a_play_follows_only_while_it_is_pushed() -> None:
@@ -100,6 +120,8 @@ def test_names_that_mean_nothing_are_refused() -> None:
         ("law(EZY,hump Y)", "a shape of"),
         ("law(EZY,bump W)", "is no variable of a law"),
         ("law(EZY)", "2 to 3 arguments"),
+        ("law(EZY,surface Y)", "a surface over two variables"),
+        ("law(EZY,surface Y,bump X)", "a surface over two variables"),
     ):
         with pytest.raises(UnknownEffect, match=said):
             parse_effect(text, chain)

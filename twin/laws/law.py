@@ -87,7 +87,9 @@ class Law:
     @property
     def title(self) -> Title:
         """What it looks like, and what carries it."""
-        text = " times ".join(f"{f.shape.word} over {f.driver.name}" for f in self.factors)
+        each = " times ".join(f"{f.shape.word} over {f.driver.name}" for f in self.factors)
+        both = f"surface over {' and '.join(d.name for d in self.drivers)}"
+        text = both if self.is_surface else each
         return Title(f"{self.carrier.name}: {text}", _bearer(self.carrier))
 
     @property
