@@ -326,7 +326,8 @@ def refined(space: Space, field: Field, start: Candidate) -> Candidate:
         parts = parts_at(at)
         if not _is_allowed(law, [v for p in parts for v in p.places], ranges):
             return space.square
-        S = columns_of(field, space, parts)
+        with np.errstate(invalid="ignore"):  # a logarithm with a negative width
+            S = columns_of(field, space, parts)
         if not np.all(np.abs(S) < _FARTHEST):  # nor NaN
             return space.square
         return space.square - space.explained(spread(start.bearer.C, S))

@@ -162,6 +162,7 @@ def search_law(space: Space, ground: Ground, policy: LawPolicy) -> Searched:
     curves += _surfaces(space, field, _gaining(two, one), polished, policy)
     ranked, curves = (sorted(own, key=lambda c: -c.score) for own in (polished, curves))
     best_curve = curves[0].score if curves else -np.inf
+    curves = _shorter_first(curves, policy)
     if not ranked or best_curve > ranked[0].score:
         ranked, curves = sorted([*curves, *ranked], key=lambda c: -c.score), []
     ranked = _shorter_first(ranked, policy)
