@@ -64,6 +64,12 @@ class Part(NamedTuple):
 _FARTHEST = 1e100  # of a formula in a step of the search: the square of a larger value overflows
 
 
+def part_of(law: Law, which: int) -> Part:
+    """One factor of a law with its places."""
+    factor, own = law.parts[which]
+    return Part(factor, law.places[own])
+
+
 def columns_of(field: Field, space: Space, parts: Sequence[Part]) -> Array:
     """Columns of a product of shapes at all touches, (N, coefficients)."""
     out = [np.ones(space.count)]

@@ -30,16 +30,12 @@ from matstd.twin.laws import (
     drivers,
     grid,
     shapes_of,
-    surface_products,
-    surface_waves,
 )
 from matstd.twin.record import Touches
 
 LENGTHS = (0.03, 0.1, 0.3)  # correlation lengths of curves, as shares of the range
 SCAN_WAVES, SCAN_LENGTH = 6, 0.2
 """Waves of either variable of a surface that is scanned, from none on, and its length."""
-
-SURFACE_LENGTHS = (0.05, 0.1, 0.2, 0.4)  # of a surface that is a law
 
 DOMAIN_MARGIN = 0.1
 """Share of the range by which the domain of a curve exceeds the values on either side."""
@@ -163,22 +159,6 @@ def evidence_of(space: Space, C: Array, waves: Waves) -> tuple[float, float, flo
     size = float(found.size[0] / max(group.scale[0], 1e-300))
     length = waves.lengths[int(found.which[0])]
     return float(found.value[0]), float(found.explained[0]), length, size
-
-
-def smooth_surface(
-    space: Space, field: Field, C: Array, drivers: Sequence[Driver]
-) -> tuple[float, float, tuple[float, ...]]:
-    """Log evidence of a surface at columns of a carrier (N, k), what it explains, and its places.
-
-    The correlation length is the same share of both domains.
-    """
-    x, y = (field.x[driver.name] for driver in drivers)
-    one, other = (field.domain(driver) for driver in drivers)
-    B = surface_products(x, y, (one, other))
-    weights = np.array([surface_waves(length) for length in SURFACE_LENGTHS])
-    waves = Waves(tuple(drivers), B, weights, SURFACE_LENGTHS)
-    evidence, explained, length, size = evidence_of(space, C, waves)
-    return evidence, explained, (*one, length, size, *other, length, 1.0)
 
 
 def _is_sensible(one: Driver, other: Driver) -> bool:

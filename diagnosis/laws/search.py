@@ -11,6 +11,7 @@ from matstd.diagnosis.laws.formulas import (
     Part,
     candidate,
     columns_of,
+    part_of,
     product_formulas,
     refined,
     scan,
@@ -27,18 +28,15 @@ from matstd.diagnosis.laws.screening import (
     Scanned,
     by_evidence,
     curves_of,
-    evidence_of,
     field_of,
     modulations,
     rough_grids,
     rough_shapes,
-    smooth_surface,
     surfaces_of,
-    waves_of,
 )
+from matstd.diagnosis.laws.smooth import curve_laws, surface_laws
 from matstd.diagnosis.laws.space import Space
-from matstd.diagnosis.residual import Bearer
-from matstd.twin.laws import SHAPES, Driver, Factor, Law
+from matstd.twin.laws import SHAPES, Driver, Factor
 from matstd.twin.record import Run
 
 TOP_SINGLES, TOP_PAIRS, TOP_SQUARES = 14, 6, 2
@@ -64,8 +62,6 @@ UNUSUAL = ("power", "saturation", "dead-band", "pulse", "saw", "quad-about", "pl
 
 DRIFT = "time"  # variable of an unrecorded driver, of which only smoothness in time is assumed
 QUICK_PERIODS = 8.0  # periods within the range from which a sine is quick
-
-SURFACES = 4
 
 ROUGH, MODULATED = 24, 2
 """Shapes of either kind that no curve shows, and those of which a second variable is looked for."""
@@ -158,8 +154,8 @@ def search_law(space: Space, ground: Ground, policy: LawPolicy) -> Searched:
     polished = [_charged(c, field, policy) for c in _distinct(polished)]
     drifts = [f for f in one if f.drivers[0].name == DRIFT][:1]
     beside = [f for f in drifts if all(f is not other for other in one[:3])]
-    curves = _curves(space, field, [*one[:3], *beside], polished, policy)
-    curves += _surfaces(space, field, _gaining(two, one), polished, policy)
+    curves = curve_laws(space, field, [*one[:3], *beside], polished, policy)
+    curves += surface_laws(space, field, _gaining(two, one), polished, policy)
     ranked, curves = (sorted(own, key=lambda c: -c.score) for own in (polished, curves))
     best_curve = curves[0].score if curves else -np.inf
     curves = _shorter_first(curves, policy)
@@ -234,7 +230,7 @@ def _with_edges(space: Space, field: Field, found: Sequence[Candidate]) -> list[
     best = max(found, key=lambda c: c.score, default=None)
     if best is None:
         return []
-    parts = [sharpened(_part(best.law, i)) for i in range(len(best.law.factors))]
+    parts = [sharpened(part_of(best.law, i)) for i in range(len(best.law.factors))]
     there = candidate(space, field, best.bearer, parts)
     is_tried = any(c.law.name == there.law.name for c in found)
     return [] if is_tried else [refined(space, field, there)]
@@ -289,7 +285,7 @@ def _modulated(space: Space, grids: Grids, found: Sequence[Candidate]) -> list[C
     """The best laws of one shape, with a size that depends on a second variable."""
     field, out = grids.field, list[Candidate]()
     for one in sorted(found, key=lambda c: -c.score)[:MODULATED]:
-        part = _part(one.law, 0)
+        part = part_of(one.law, 0)
         C = spread(one.bearer.C, columns_of(field, space, [part]))
         driver, gain = modulations(space, field, C, part.factor.driver)[0]
         if gain > MIN_GAIN_PAIR:
@@ -312,7 +308,7 @@ def _beside_best(space: Space, field: Field, found: Sequence[Candidate]) -> list
     best = max(found, key=lambda c: c.score, default=None)
     if best is None:
         return []
-    parts = [_part(best.law, i) for i in range(len(best.law.factors))]
+    parts = [part_of(best.law, i) for i in range(len(best.law.factors))]
     out = list[Candidate]()
     for own in (parts, *([part] for part in parts if len(parts) > 1)):
         others = [candidate(space, field, bearer, own) for bearer in field.bearers]
@@ -349,89 +345,3 @@ def _shorter_first(ranked: Sequence[Candidate], policy: LawPolicy) -> list[Candi
     near = [c for c in ranked if c.score > ranked[0].score - policy.shorter]
     first = min(near, key=lambda c: (len(c.law.factors), c.parameters, -c.score))
     return [first, *(c for c in ranked if c is not first)]
-
-
-def _curves(
-    space: Space,
-    field: Field,
-    one: Sequence[Found],
-    formulas: Sequence[Candidate],
-    policy: LawPolicy,
-) -> list[Candidate]:
-    """Laws without a formula: the best curves, alone or times a factor that a formula has."""
-    out = []
-    for f in one:
-        if f.length > 0.0:  # else the variable is a direction, or has two values
-            score = f.evidence - policy.tried_singles
-            own = (f.length, f.size)
-            out.append(_curve(field, f.bearer, f.drivers[0], own, f.explained, score))
-    products = [c for c in formulas if len(c.law.factors) == 2][:3]
-    for c in products:
-        for kept, other in ((0, 1), (1, 0)):
-            first, driver = _part(c.law, kept), c.law.factors[other].driver
-            waves = waves_of(field, driver)
-            if waves.lengths[0] > 0.0:
-                C = spread(c.bearer.C, columns_of(field, space, [first]))
-                evidence, explained, *size = evidence_of(space, C, waves)
-                charge = policy.tried_products + space.charge(len(first.factor.shape.free))
-                score = evidence - charge
-                out.append(_curve(field, c.bearer, driver, size, explained, score, first))
-    return out
-
-
-def _surfaces(
-    space: Space,
-    field: Field,
-    two: Sequence[Found],
-    formulas: Sequence[Candidate],
-    policy: LawPolicy,
-) -> list[Candidate]:
-    """Laws without a formula over two variables that do not separate: a ring, a diagonal.
-
-    Over the variables of the best products, since a screened surface has few waves.
-    """
-    ranked = sorted(formulas, key=lambda c: -c.score)
-    products = [(c.bearer, c.law.drivers) for c in ranked if len(c.law.drivers) == 2]
-    tried = [*products[:SURFACES], *((f.bearer, f.drivers) for f in two[:SURFACES])]
-    each = {
-        (bearer.carrier.name, *sorted(d.name for d in drivers)): (bearer, drivers)
-        for bearer, drivers in tried
-        if bearer.carrier.count == 1
-        and all(d.name != DRIFT and waves_of(field, d).lengths[0] > 0.0 for d in drivers)
-    }
-    out = list[Candidate]()
-    for bearer, drivers in each.values():
-        evidence, explained, places = smooth_surface(space, field, bearer.C, drivers)
-        factors = tuple(Factor(SHAPES["surface"], d) for d in drivers)
-        law = Law(bearer.carrier, factors, places)
-        score = evidence - policy.tried_products
-        out.append(Candidate(bearer, law, explained, len(law.parameters), score))
-    return out
-
-
-def _part(law: Law, which: int) -> Part:
-    """One factor of a law with its places."""
-    factor, own = law.parts[which]
-    return Part(factor, law.places[own])
-
-
-def _curve(
-    field: Field,
-    bearer: Bearer,
-    driver: Driver,
-    size: Sequence[float],
-    explained: float,
-    score: float,
-    *first: Part,
-) -> Candidate:
-    """A smooth curve over a variable, without a formula, where wanted times a first factor.
-
-    Args:
-        size: Its correlation length, as a share of the domain, and its size, mm or rad.
-    """
-    curve = Part(Factor(SHAPES["curve"], driver), (*field.domain(driver), *size))
-    factors, places = zip(*first, curve, strict=True)
-    law = Law(bearer.carrier, factors, tuple(v for own in places for v in own))
-    return Candidate(
-        bearer=bearer, law=law, explained=explained, parameters=len(law.parameters), score=score
-    )

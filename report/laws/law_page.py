@@ -66,6 +66,16 @@ _ALIKE = (
     "shares. A run in which they differ decides: other axis positions for other carriers, another "
     "course of time for a temperature."
 )
+_CURVE = (
+    "The law with twice its uncertainty (of a curve without a formula that of its form beside a "
+    "parabola, which geometry takes up), and the touches with the law put back, over their levers "
+    "on the carrier. Touches with a small lever are not drawn."
+)
+_SURFACE = (
+    "The touches with the law put back, over their levers on the carrier; the law; and the "
+    "standard uncertainty of its form beside a surface of second degree, which geometry takes up. "
+    "Touches with a small lever are not drawn."
+)
 _NOTHING = (
     "What remains follows from nothing that the run recorded in any form that was tried. The model "
     "of the starting effects stays as it is."
@@ -160,13 +170,8 @@ def _law_sections(learning: Learning, one: LearntLaw, number: int) -> list[Secti
     if law.is_curve_alone:
         numbers = []
     numbers += [_row(p, place_words(p)) for p in places(learning, law)]
-    picture = Picture(
-        f"pictures/law_{number}.png",
-        "The law with twice its uncertainty (of a curve without a formula that of its form beside "
-        "a parabola, which geometry takes up), and the touches with the law put back, over their "
-        "levers on the carrier. Touches with a small lever are not drawn.",
-        draw_law(learning, law),
-    )
+    caption = _SURFACE if law.is_surface else _CURVE
+    picture = Picture(f"pictures/law_{number}.png", caption, draw_law(learning, law))
     table = Table(("parameter", "value"), numbers, "Numbers of the law")
     said = [looks_like(law), rival_sentence(one), library_sentence(one), rivals_sentence(one)]
     first = [f"**{formula_words(law)}**", *filter(None, said)]

@@ -59,7 +59,8 @@ from matstd.diagnosis.laws.learn import _of_its_run
 from matstd.diagnosis.laws.library import LibraryEffect
 from matstd.diagnosis.laws.remainder import _determined
 from matstd.diagnosis.laws.screening import _quick_frequencies, by_evidence, modulations
-from matstd.diagnosis.laws.search import Ground, _curves
+from matstd.diagnosis.laws.search import Ground
+from matstd.diagnosis.laws.smooth import curve_laws
 from matstd.diagnosis.laws.space import Space
 from matstd.diagnosis.remarks import EffectOfOtherRun
 from matstd.diagnosis.residual import apart_elsewhere
@@ -532,7 +533,7 @@ def test_no_curve_is_offered_over_a_direction(stylus) -> None:
     every = by_evidence(space, ground.curves)
     signs = [f for f in every if f.drivers[0].nature == "sign"]
     assert any(len(np.unique(ground.field.x[f.drivers[0].name])) == 3 for f in signs)
-    assert _curves(space, ground.field, signs, [], POLICY) == []
+    assert curve_laws(space, ground.field, signs, [], POLICY) == []
 
 
 @pytest.fixture(scope="module")
