@@ -177,8 +177,7 @@ def _searched(
 ) -> Searched:
     """What a search finds beside laws, first the law that predicts touches left out.
 
-    A formula is to predict them at least as well as a curve, and as a surface: a bump times a
-    plateau imitated a ring, and predicted a second run with 1.43 µm instead of 1.33 without a law.
+    A formula is to predict them at least as well as the best curve, and the best surface.
     """
     found = search_law(Space.of(fit), ground, policy)
     if not found.smooth:
