@@ -13,8 +13,8 @@ from matstd.twin.frames import Array
 from matstd.twin.laws.shape import kept_beyond
 
 SURFACE_WAVES = np.array([(i, j) for i, j in product(range(12), repeat=2) if i * i + j * j < 144])
-"""Half waves over the domain of either variable, (K, 2). Of 12 waves a way 121 are alike in all directions;
-166 of 14 gained 5 % more evidence on rings, with twice the covariance to keep."""
+"""Half waves over the domain of either variable, (K, 2), alike in all directions. With 166 of them
+instead of 121 rings gained 5 % more evidence, and twice the covariance had to be kept."""
 
 _SIDES = [p for p in product(("below", "within", "above"), repeat=2) if p != ("within", "within")]
 
