@@ -15,6 +15,7 @@ common.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import combinations
 
 import numpy as np
 
@@ -55,18 +56,31 @@ def functionals(fit: Fit, theta: Array) -> Iterator[Functional]:
             several states are compared.
     """
     chain = fit.model.chain
-    lines = {axis: _Line(fit, axis) for axis in chain.linear_axes if _is_probed(fit, axis)}
+    lines = _lines(fit)
     for line in lines.values():
         yield from line.functionals(theta)
-    axes = sorted(lines)
-    slopes = _affine_slopes(fit, axes)
-    for i, first in enumerate(axes):
-        for second in axes[i + 1 :]:
-            yield from _squareness(lines[first], lines[second], slopes)
+    yield from _squarenesses(lines)
     probed = [axis for axis in chain.rotary_axes if _is_probed(fit, axis)]
     yield from arm_functionals(fit, probed)
     for axis in probed:
         yield from _rotary(fit, theta, axis)
+
+
+def squarenesses(fit: Fit) -> Iterator[Functional]:
+    """The squareness of every two linear axes."""
+    return _squarenesses(_lines(fit))
+
+
+def _lines(fit: Fit) -> "dict[str, _Line]":
+    chain = fit.model.chain
+    return {axis: _Line(fit, axis) for axis in chain.linear_axes if _is_probed(fit, axis)}
+
+
+def _squarenesses(lines: "Mapping[str, _Line]") -> Iterator[Functional]:
+    if len(lines) > 1:
+        slopes = _affine_slopes(next(iter(lines.values())).fit, sorted(lines))
+        for first, second in combinations(sorted(lines), 2):
+            yield from _squareness(lines[first], lines[second], slopes)
 
 
 def _is_probed(fit: Fit, axis: str) -> bool:
@@ -204,10 +218,10 @@ def _affine_slopes(fit: Fit, axes: Sequence[str]) -> Mapping[str, Array]:
     q = np.zeros((len(rows), len(chain.axes)))
     for axis in axes:
         q[:, chain.axis_index(axis)] = t.reading(axis)[rows]
-    at = np.column_stack([q[:, chain.axis_index(a)] for a in axes]) if axes else q[:, :0]
+    at = np.column_stack([q[:, chain.axis_index(a)] for a in axes])
     at = at - at.mean(axis=0)
     size = np.linalg.norm(at, axis=0)
-    if not axes or np.linalg.svd(at / size, compute_uv=False)[-1] < MIN_INDEPENDENT_SHARE:
+    if np.linalg.svd(at / size, compute_uv=False)[-1] < MIN_INDEPENDENT_SHARE:
         return {}
     D = _displacements(fit, at_poses(chain, q, float(np.mean(t.length))))
     slopes = np.tensordot(np.linalg.pinv(at / size) / size[:, None], D, axes=1)  # (A, 3, P)

@@ -17,7 +17,7 @@ from scipy.special import softmax
 
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.geometry.changes import changed_since
-from matstd.diagnosis.geometry.functionals import functionals
+from matstd.diagnosis.geometry.functionals import squarenesses
 from matstd.diagnosis.geometry.quantities import Quantity
 from matstd.diagnosis.geometry.rows import Estimate, GeometryRow
 from matstd.twin.frames import Array, Mask
@@ -74,10 +74,9 @@ def _spreads(fit: Fit) -> dict[str, float]:
     mean = np.concatenate([fit.prior.mean[:machine], np.zeros(len(sizes))])
     every = [mean + scale * phi[place] for phi in theta]
     out = {}
-    for one in functionals(wide, every[0]):
-        if one.quantity is Quantity.SQUARENESS:
-            values = np.array([one.weights @ each for each in every])
-            out[one.symbol] = float(np.sqrt(share @ (values - values[0]) ** 2))
+    for one in squarenesses(wide):
+        values = np.array([one.weights @ each for each in every])
+        out[one.symbol] = float(np.sqrt(share @ (values - values[0]) ** 2))
     return out
 
 

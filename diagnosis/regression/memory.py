@@ -214,8 +214,10 @@ def _marginal(X: Array, y: Array, log_det: float) -> float:
     n, s = len(y), 1.0
     # a column of a prior 1e7 times the noise leaves no digit of the others in their inner products
     R = qr(np.column_stack([X, y]), mode="r", check_finite=False)[0][: X.shape[1] + 1]
-    # the faster routine does not converge on a column that rounding alone left
-    U, size, _ = svd(R[:, :-1], False, check_finite=False, lapack_driver="gesvd")
+    try:
+        U, size, _ = svd(R[:, :-1], False, check_finite=False)
+    except np.linalg.LinAlgError:  # on a column that rounding alone left; the slower one does
+        U, size, _ = svd(R[:, :-1], False, check_finite=False, lapack_driver="gesvd")
     along = (U.T @ R[:, -1]) ** 2
     beside = max(float(R[:, -1] @ R[:, -1] - along.sum()), 0.0)
     for remaining in reversed(range(MEMORY_PASSES + 1)):

@@ -174,10 +174,15 @@ class Chain(Displayed):
 
     def link_index(self, name: str) -> int:
         """Place of a link, also `w` and `t`, in arrays over links (N, L, 6); raises UnknownAxis."""
-        for i, link in enumerate(self.links):
-            if link.name == name:
-                return i
-        raise UnknownAxis(name, [link.name for link in self.links])
+        place = self._places.get(name)
+        if place is None:
+            raise UnknownAxis(name, list(self._places))
+        return place
+
+    @cached_property
+    def _places(self) -> dict[str, int]:
+        """Place of every link by its name: asked for by every term of every effect."""
+        return {link.name: i for i, link in enumerate(self.links)}
 
     def link(self, name: str) -> Link:
         """The link of that name; raises UnknownAxis."""
