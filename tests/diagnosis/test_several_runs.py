@@ -1,10 +1,15 @@
 """Several runs of one machine: what changed between them comes back, and nothing else is named."""
 
 import json
+from contextlib import redirect_stdout
 from dataclasses import replace
+from io import StringIO
+from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import pytest
+from figures import render_alone
 from formats import undescribed
 from simulator_case import named
 from simulator_experiment import MACHINES
@@ -15,7 +20,8 @@ from written import tree_lines
 
 import matstd
 from matstd.cli import main
-from matstd.diagnosis.answer import Verdict, diagnose
+from matstd.diagnosis import answer
+from matstd.diagnosis.answer import Diagnosis, Verdict, diagnose
 from matstd.diagnosis.answer.trend import single_change
 from matstd.diagnosis.files import diagnosis_table
 from matstd.diagnosis.fit import Prior, fit_run
@@ -46,15 +52,38 @@ def knocked():
     return made(3, [{}, {"EC0Y": CHANGE}])
 
 
-@pytest.fixture(scope="module")
-def diagnosed(knocked):
-    runs = joined(knocked)
-    return diagnose(runs, candidates=few(runs))
+RIVALS = ("backlash", "location", "thermal-static")
+"""Of a change of a constant; the slow tests have the whole library."""
 
 
 def few(run):
-    """Rivals of a change of a constant; the slow tests have the whole library."""
-    return proposals(run.touches, ("backlash", "location", "thermal-static"))
+    return proposals(run.touches, RIVALS)
+
+
+class Commanded(NamedTuple):
+    """What the command makes of the two runs."""
+
+    out: Path
+    printed: str
+    figures: dict[str, str]
+    found: Diagnosis
+
+
+@pytest.fixture(scope="module")
+def commanded(folder, tmp_path_factory):
+    out, printed, found = tmp_path_factory.mktemp("command") / "out", StringIO(), []
+    files = [str(folder / f"{n}.csv") for n in ("spring", "autumn")]
+    words = ["diagnose", *files, "--only", *RIVALS, "--no-learn", "-o", str(out)]
+    with pytest.MonkeyPatch.context() as patch, redirect_stdout(printed):
+        figures = render_alone(patch)
+        patch.setattr(answer, "diagnose", lambda *of: found.append(diagnose(*of)) or found[0])
+        assert main(words) == 0
+    return Commanded(out, printed.getvalue(), figures, *found)
+
+
+@pytest.fixture(scope="module")
+def diagnosed(commanded):
+    return commanded.found
 
 
 def row(rows, symbol):
@@ -72,7 +101,7 @@ def test_what_changed_is_reported_with_its_size_and_nothing_else(diagnosed) -> N
     (sentence,) = change_sentences(diagnosed.trend)
     assert matstd.diagnose  # the door registers how results are shown
     assert sentence in repr(diagnosed)  # a session shows it as the command does
-    assert sentence.startswith("from a to b squareness of Y to X (EC0Y) changed from ")
+    assert sentence.startswith("from spring to autumn squareness of Y to X (EC0Y) changed from ")
 
 
 def test_keys_of_several_runs_are_described(diagnosed) -> None:
@@ -248,14 +277,10 @@ def folder(tmp_path_factory):
 
 
 def test_the_command_reports_what_changed_and_saves_the_machine_as_it_is_now(
-    folder, tmp_path, capsys, rendered_alone, unchanged
+    commanded, folder, tmp_path, capsys, unchanged
 ) -> None:
-    figures = rendered_alone()
-    files = [str(folder / f"{n}.csv") for n in ("spring", "autumn")]
-    out = tmp_path / "out"
-    words = ["diagnose", *files, "--only", "backlash", "--no-learn", "-o", str(out)]
-    assert main(words) == 0
-    printed = capsys.readouterr().out.replace(str(tmp_path), "")
+    out, printed, figures, _ = commanded
+    printed = printed.replace(str(folder), "").replace(str(out.parent), "")
     table = json.loads((out / "diagnosis.json").read_text(encoding="utf-8"))
     assert [r["run"] for r in table["trend"]["runs"]] == ["spring", "autumn"]
     (changed,) = [q for q in table["trend"]["quantities"] if q["has_changed_into"]]
@@ -268,9 +293,9 @@ def test_the_command_reports_what_changed_and_saves_the_machine_as_it_is_now(
     # the saved machine is that of the autumn
     model = str(out / "model.toml")
     errors = {}
-    for path in files:
-        to = tmp_path / path.split("/")[-1].removesuffix(".csv")
-        assert main(["compare", path, "--model", model, "-o", str(to), "--no-report"]) == 0
+    for path in sorted(folder.glob("*.csv")):
+        to = tmp_path / path.stem
+        assert main(["compare", str(path), "--model", model, "-o", str(to), "--no-report"]) == 0
         assert "was learnt from this very run" in " ".join(capsys.readouterr().out.split())
         errors[to.name] = json.loads((to / "comparison.json").read_text())["rms_um"]
     assert errors["autumn"] < 1.2 * NOISE / UM < errors["spring"]
