@@ -388,12 +388,20 @@ def test_no_law_is_a_product_of_two_temperatures(stylus) -> None:
 def test_the_command_writes_an_effect_that_the_other_commands_take(
     stylus, tmp_path, capsys, rendered_alone, monkeypatch, unchanged
 ) -> None:
-    figures, texts = rendered_alone(), stylus[0]
+    figures, (texts, _, found) = rendered_alone(), stylus
+
+    def learnt(run, model):
+        """What the session has learnt of this run beside this model."""
+        np.testing.assert_array_equal(run.deviation, found.before.run.deviation)
+        assert model.names == found.before.model.names
+        return found
+
     for name, text in (("run.csv", texts[0]), ("two.csv", texts[1])):
         (tmp_path / name).write_text(text, encoding="utf-8")
     (tmp_path / "machine.toml").write_text(MACHINES["hmc1995"], encoding="utf-8")
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("COLUMNS", "100")
+    monkeypatch.setattr("matstd.api.learning.learn_laws", learnt)
     out = tmp_path / "out"
     assert main(["learn", "run.csv", "--second-run", "two.csv", "-o", "out"]) == 0
     # of curves and rivals the search ends elsewhere on another processor
@@ -459,6 +467,7 @@ def test_a_law_that_few_touches_show_is_no_row_of_gross_errors(stylus) -> None:
     assert nothing.after is nothing.before
 
 
+@pytest.mark.usefixtures("unrendered")
 def test_a_diagnosis_learns_the_law_of_what_remains(stylus, tmp_path) -> None:
     _, (run, second, _), learnt = stylus
     found = diagnose(run, only=["backlash"])
