@@ -9,6 +9,7 @@ from importlib.metadata import version
 import numpy as np
 import pytest
 import volume_by_hand
+from standards import kernel_here
 
 from matstd import cad_out
 from matstd.artefact.body import DatumSphere
@@ -265,7 +266,8 @@ def spoilt(upright, **what):
     return replace(upright, patches=patches)
 
 
-def test_a_refused_design_leaves_the_files_of_the_last_one(upright, tmp_path):
+def test_a_refused_design_leaves_the_files_of_the_last_one(upright, tmp_path, monkeypatch):
+    kernel_here(monkeypatch)
     for name in ("standard.step", "standard.stl"):
         (tmp_path / name).write_text("of the last run")
     adrift = spoilt(upright, depth=8.0)
@@ -310,6 +312,16 @@ def test_a_task_that_hangs_is_stopped(tmp_path):
 def test_a_task_that_fails_shows_its_last_line(tmp_path):
     ending = run_apart("math", "sqrt(-1.0) or print", tmp_path)
     assert str(ending).startswith("failed (exit code 1): ValueError: ")
+
+
+def test_what_a_task_refuses_comes_back_in_its_words(tmp_path, monkeypatch):
+    ending = run_apart("matstd.twin.files", "read_machine", tmp_path)  # which is a folder
+    assert str(ending) == ending.refusal
+    assert str(tmp_path) in ending.refusal
+    assert not ending.is_good
+    monkeypatch.setattr(process, "run_apart", lambda *_, **__: ending)
+    with pytest.raises(NotBuildable, match=re.escape(ending.refusal)):
+        process.run_kernel("build", tmp_path)
 
 
 @pytest.mark.slow

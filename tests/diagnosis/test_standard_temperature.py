@@ -98,10 +98,10 @@ def test_what_is_said_beside_the_scales(found) -> None:
         run, *_ = found(25.0, head)
         (size,) = [
             r
-            for r in compare(run, ordinary_model(run.touches.chain)).remarks
+            for r in compare(run[::3], ordinary_model(run.touches.chain)).remarks
             if isinstance(r, BodySize)
         ]
-        corners = run.touches.point.max(axis=0) - run.touches.point.min(axis=0)
+        corners = np.ptp(run.touches.point[::3], axis=0)
         assert size.length == pytest.approx(np.sqrt(np.sum(corners**2)))
         message[head] = size, remark_sentence(size)
     assert message[AT_25][0].strain == pytest.approx(52.5e-6)
