@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from figures import render_alone
 
 import matstd
 from matstd.cli import main
@@ -126,27 +127,42 @@ def test_a_run_can_be_given_as_a_path_a_run_or_several(there) -> None:
     assert len(later.run) == len(run) + 33
 
 
-def test_machine_errors_of_a_fit_are_those_of_its_file(there, unrendered) -> None:
-    run = matstd.read_run("run.csv")[::3]
-    found = matstd.diagnose(run, only=["thermal-lag(EZZ)"], auto=True, learn=False)
-    found.save("out")
-    saved = MachineErrors.of_model(matstd.read_model("out/model.toml"))
+ALIKE = ["thermal-lag(EZZ)", "thermal-lag(EZX)"]
+
+
+@pytest.fixture(scope="module")
+def few(workshop, tmp_path_factory):
+    """A folder with a third of the run and its diagnosis, saved as `door`, and the diagnosis."""
+    place = tmp_path_factory.mktemp("few")
+    shutil.copy(workshop / "machine.toml", place)
+    matstd.write_run(place / "few.csv", matstd.read_run(workshop / "run.csv")[::3], "machine.toml")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(place)
+        render_alone(patch)
+        found = matstd.diagnose("few.csv", only=ALIKE, auto=True, learn=False)
+        found.save("door")
+    return place, found
+
+
+def test_machine_errors_of_a_fit_are_those_of_its_file(few, monkeypatch) -> None:
+    place, found = few
+    monkeypatch.chdir(place)
+    saved = MachineErrors.of_model(matstd.read_model("door/model.toml"))
     for errors in (MachineErrors.of_model(found.fit), MachineErrors.of_model(found.model)):
         assert [e.name for e in errors.effects] == [e.name for e in saved.effects]
         np.testing.assert_allclose(np.concatenate(errors.theta), np.concatenate(saved.theta))
-    q = np.zeros((1, len(run.touches.chain.axes)))
+    q = np.zeros((1, len(found.run.touches.chain.axes)))
     state = matstd.State(temperature={"spindle": 25.0})
-    by_file = matstd.compensate("out/model.toml", tool_length=160.0, state=state)
+    by_file = matstd.compensate("door/model.toml", tool_length=160.0, state=state)
     assert found.compensate(tool_length=160.0, state=state).header() == by_file.header()
     assert len(by_file.errors.touches(q, 160.0)) == 1
 
 
-def test_commands_write_what_the_door_writes(there, unrendered) -> None:
-    alike = ["thermal-lag(EZZ)", "thermal-lag(EZX)"]
-    matstd.write_run("few.csv", matstd.read_run("run.csv")[::3], "machine.toml")
-    assert main(["diagnose", "few.csv", "--no-learn", "--only", *alike, "-o", "command"]) == 0
-    found = matstd.diagnose("few.csv", only=alike, learn=False)
-    found.save("door")
+def test_commands_write_what_the_door_writes(few, monkeypatch, unrendered) -> None:
+    place, found = few
+    monkeypatch.chdir(place)
+    words = ["diagnose", "few.csv", "--auto", "--no-learn", "--only", *ALIKE, "-o", "command"]
+    assert main(words) == 0
     names = {p.relative_to("command") for p in Path("command").rglob("*") if p.is_file()}
     assert names == {p.relative_to("door") for p in Path("door").rglob("*") if p.is_file()}
     for name in ("diagnosis.json", "model.toml"):

@@ -114,7 +114,7 @@ def test_the_model_with_the_effect_leaves_noise(warm_up, tmp_path):
 # a hose that no library knows
 
 
-@pytest.mark.slow  # the users' own effect below begins where this ends
+@pytest.mark.slow
 def test_the_hose_is_unexplained_and_seen_where_it_is(tmp_path):
     matstd("diagnose", "hose.csv", "--no-report", "-o", tmp_path / "out")
     found = result(tmp_path / "out")
@@ -122,6 +122,7 @@ def test_the_hose_is_unexplained_and_seen_where_it_is(tmp_path):
     assert {d["variable"] for d in found["depends_on"]} >= {"X_mm", "Y_mm"}
 
 
+@pytest.mark.slow  # `diagnosis/test_files_and_commands` has an effect of the user's own
 def test_the_users_own_effect_explains_the_hose(tmp_path):
     own = ["--effects", EXAMPLES / "my_effects.py", "--only", "hose", "backlash", "thermal-lag"]
     words = ["--auto", "--no-report", "--no-learn", "-o", tmp_path / "out"]

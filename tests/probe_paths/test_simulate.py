@@ -319,6 +319,7 @@ def test_temperatures_by_the_clock_come_with_the_run(logged):
     assert np.ptp(started) < 0.002  # a kelvin a minute from the start of the first program
 
 
+@pytest.mark.slow  # the run with an effect is tested above, the diagnosis in its own room
 def test_a_planted_effect_is_found_and_named(folder, golden, small):
     """Planted by its own formula in the exact machine, found by the diagnosis from the run file."""
     wanted = golden.requests(small, each=8)
