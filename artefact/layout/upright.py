@@ -218,9 +218,10 @@ def holes_on(
         good &= _distance_to_pillar([face], places)[:, 0] >= fit.bore_radius + _HOLE_GAP
     mirrored = good.reshape(len(xs), -1)[::-1].ravel()
     pair, third = places[good & mirrored & (places[:, 0] > 0.0)], places[good]
-    legs = [np.linalg.norm(pair[:, None] * [s, 1.0] - third, axis=-1) for s in (-1.0, 1.0)]
-    least = np.minimum(np.minimum(*legs), 2.0 * pair[:, :1])
-    least[np.abs(pair[:, 1:] - third[:, 1]) < _MIN_HOLE_DISTANCE] = 0.0  # three in a row would rock
+    x, y = pair[:, :1], pair[:, 1:]
+    legs = [np.sqrt((s * x - third[:, 0]) ** 2 + (y - third[:, 1]) ** 2) for s in (-1.0, 1.0)]
+    least = np.minimum(np.minimum(*legs), 2.0 * x)
+    least[np.abs(y - third[:, 1]) < _MIN_HOLE_DISTANCE] = 0.0  # three in a row would rock
     if least.max(initial=0.0) < _MIN_HOLE_DISTANCE:
         slots = f"limits.slot_pitch_mm = {pitch:g}" if limits.slot_pitch else "no slots"
         raise NotBuildable(
@@ -229,12 +230,12 @@ def holes_on(
             f"and table (diameter {2 * limits.table_radius:g} mm) with {slots}",
             binding=["slots"] if limits.slot_pitch else [],
         )
-    round_middle = np.where(
-        least < _MIN_HOLE_DISTANCE, 0.0, np.minimum(least, _ROUND_MIDDLE * _inner(pair, third))
-    )
-    worth = round_middle + 1e-3 * (legs[0] + legs[1])
-    worth[least < _MIN_HOLE_DISTANCE] = -np.inf
-    first, last = np.unravel_index(np.argmax(worth), worth.shape)
+    of_pair, of_third = np.nonzero(least >= _MIN_HOLE_DISTANCE)
+    inner = _inner(pair[of_pair], third[of_third])
+    far = least[of_pair, of_third]
+    worth = np.minimum(far, _ROUND_MIDDLE * inner) + 1e-3 * (legs[0] + legs[1])[of_pair, of_third]
+    best = int(np.argmax(worth))
+    first, last = of_pair[best], of_third[best]
     (x, y), bore = pair[first], (fit.hole_radius, fit.bore_radius, fit.bore_depth)
     return tuple(
         MountingHole(f"HOLE{i}", float(a), float(b), *bore)
@@ -243,13 +244,13 @@ def holes_on(
 
 
 def _inner(pair: Array, third: Array) -> Array:
-    """Distance of the middle from the nearest side of every triangle, (P, T), mm; 0 outside.
+    """Distance of the middle from the nearest side of every triangle, (N,), mm; 0 outside.
 
     Args:
-        pair: The right one of two holes that mirror each other in x, (P, 2).
-        third: (T, 2).
+        pair: The right one of two holes that mirror each other in x, (N, 2).
+        third: (N, 2).
     """
-    x, y = pair[:, :1], pair[:, 1:]
+    x, y = pair.T
     out = np.abs(y) * (np.sign(third[:, 1] - y) == -np.sign(y))
     for begin in (x, -x):  # the sides to the third hole
         across, up = third[:, 0] - begin, third[:, 1] - y

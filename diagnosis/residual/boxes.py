@@ -55,6 +55,11 @@ class Bounded:
         return len(self.labels) or len(self.cuts) + 1
 
     @cached_property
+    def ordered(self) -> IntArray:
+        """Touches in the order of their bins, (N,)."""
+        return np.argsort(self.bins, kind="stable")
+
+    @cached_property
     def is_offered(self) -> Mask:
         """Whether bins i to k are a region, (B, B); of a label only single ones."""
         square = np.ones((self.size, self.size), dtype=bool)

@@ -126,8 +126,7 @@ class _Constant:
     def gains(self, rows: Mask, variable: Bounded) -> Array:
         """As of `Measure`."""
         space = self.space
-        own, whole, along = self._sums(rows, variable)
-        enough = summed(np.bincount(variable.bins[space.used & rows], minlength=variable.size))
+        enough, own, whole, along = self._sums(rows, variable)
         sound = (
             (enough >= MIN_TOUCHES_OF_REGION)
             & (enough <= MAX_SHARE * len(space.u))
@@ -137,30 +136,37 @@ class _Constant:
         drop = np.where(sound, along**2 / np.where(sound, own, 1.0), 0.0)
         return _gain(space, drop) if self.drawing is None else 0.5 * drop
 
-    def _sums(self, rows: Mask, variable: Bounded) -> tuple[Array, Array, Array]:
-        """The column in bins i to k: its square beside the model, its square, and its drawing.
+    def _sums(self, rows: Mask, variable: Bounded) -> tuple[Array, Array, Array, Array]:
+        """Touches in bins i to k; the column's square beside the model, square, and drawing there.
 
         Arrays (B, B). In white noise a touch counts in its own bin alone: sums of rows, and no
         product of matrices with a column a bin, which was a quarter of the time of a search.
         """
         space, size = self.space, variable.size
+        inside = variable.ordered[(rows & space.used)[variable.ordered]]
+        bins = variable.bins[inside]
+        count = np.bincount(bins, minlength=size)
         if space.whitener is not None:
-            bins = variable.bins[:, None] == np.arange(size)
-            C = _white(space, (rows * self.column)[:, None] * bins)
+            is_in = variable.bins[:, None] == np.arange(size)
+            C = _white(space, (rows * self.column)[:, None] * is_in)
             beside, G = C.T @ space.Q[: len(C)], C.T @ C
             along = C.T @ self._drawn[: len(C)]
-            return square_sums(G - beside @ beside.T), square_sums(G), summed(along)
-        inside = np.flatnonzero(rows[space.used])
-        bins = variable.bins[space.used][inside]
-        order = np.argsort(bins, kind="stable")
-        inside, bins = inside[order], bins[order]
-        first = np.flatnonzero(np.concatenate([[True], bins[1:] != bins[:-1]])[: len(bins)])
+            own, whole = square_sums(G - beside @ beside.T), square_sums(G)
+            return summed(count), own, whole, summed(along)
         sums = np.zeros((size, self._products.shape[1]))
-        if len(first):
-            sums[bins[first]] = np.add.reduceat(self._products[inside], first, axis=0)
+        if len(inside):
+            there = count > 0
+            first = (np.cumsum(count) - count)[there]
+            products = self._products.take(self._place[inside], axis=0)
+            sums[there] = np.add.reduceat(products, first, axis=0)
         whole, along, beside = sums[:, 0], sums[:, 1], sums[:, 2:]
         own = square_sums(np.diag(whole) - beside @ beside.T)
-        return own, summed(whole), summed(along)
+        return summed(count), own, summed(whole), summed(along)
+
+    @cached_property
+    def _place(self) -> IntArray:
+        """Row of `_products` of every touch in use, (N,)."""
+        return np.cumsum(self.space.used) - 1
 
     @property
     def _drawn(self) -> Array:

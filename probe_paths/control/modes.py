@@ -41,21 +41,31 @@ _CALIBRATED: Mapping[Datum, Callable[[State], float]] = {
 
 def system_datum(block: Block, state: State) -> float:
     """Calibration of the probe, number of the tool, positions, end of Z, basic rotation."""
-    frame, system = state.frame, language_of(state.path).system
-    datum = next((d for d, text in system.items() if text == block.word("datum")), None)
-    places = {Datum(f"{kind}{a}"): a for a in frame.letters for kind in ("", _PRESET)}
-    known = {*_CALIBRATED, *places, *([] if state.tool is None else [Datum.TOOL])}
-    if datum is None or datum not in known:
-        available = ", ".join(text for d, text in system.items() if d in known)
-        raise state.refusal(block, f"one of {available}", block.word("datum"))
-    if datum in places and not state.is_synchronous:
+    system, word = language_of(state.path).system, block.word("datum")
+    datum = next((d for d, text in system.items() if text == word), None)
+    if datum is None or not _is_known(datum, state):
+        available = ", ".join(text for d, text in system.items() if _is_known(d, state))
+        raise state.refusal(block, f"one of {available}", word)
+    letter = datum.removeprefix(_PRESET)
+    is_place = letter in state.frame.letters
+    if is_place and not state.is_synchronous:
         raise state.refusal(block, f"{state.terms.sync} before it", "a position read ahead")
     fault = state.fault
     is_off = fault is not None and datum == (fault.work or fault.datum)
     if fault is not None and fault.label == Label.TURNED:  # the first move goes to zero
         is_off = is_off and state.turns > 1
-    value = _CALIBRATED[datum](state) if datum in _CALIBRATED else _place(datum, places, state)
+    if is_place:
+        value = _place(letter, datum != letter, state)
+    else:
+        value = float(state.tool or 0) if datum is Datum.TOOL else _CALIBRATED[datum](state)
     return value + is_off * state.off
+
+
+def _is_known(datum: Datum, state: State) -> bool:
+    """Whether a system datum has a value here: a tool is called, the machine has the axis."""
+    if datum is Datum.TOOL:
+        return state.tool is not None
+    return datum in _CALIBRATED or datum.removeprefix(_PRESET) in state.frame.letters
 
 
 def read_datum(block: Block, state: State) -> None:
@@ -68,14 +78,12 @@ def read_datum(block: Block, state: State) -> None:
             state.reached[q] = letter, 0.0
 
 
-def _place(datum: Datum, places: Mapping[Datum, str], state: State) -> float:
-    """Number of the tool, or position of an axis: its reading, or relative to the preset."""
-    if datum not in places:
-        return float(state.tool or 0)
-    letter, frame = places[datum], state.frame
+def _place(letter: str, is_preset: bool, state: State) -> float:
+    """Position of an axis: its reading, or relative to the preset."""
+    frame = state.frame
     reading = float(state.q[frame.chain.axis_index(letter)])
     reading = _UNKNOWN_READING if math.isnan(reading) else reading
-    if datum.startswith(_PRESET):
+    if is_preset:
         return (state.plane or frame).coordinate(letter, reading)
     return reading if letter in LINEAR else reading / DEG
 
