@@ -208,6 +208,7 @@ def test_11_the_plate_is_as_large_as_drawn_and_tables_hold_what_they_can() -> No
     assert left["sinumerik"] > 5 * UM  # pitch far from the datum
 
 
+@pytest.mark.slow  # the run is diagnosed in `test_examples_runs`, tables are written in their room
 @pytest.mark.usefixtures("unrendered")
 def test_12_the_drift_of_the_machine_of_1995_is_found_and_taken_back(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch

@@ -113,7 +113,10 @@ NUMBERS = {"pivot": "-419.9903", "ball": "3.0006"}
 
 @pytest.mark.parametrize(
     ("name", "mistake", "true"),
-    [("pivot", "point of a rotary axis", -2.0), ("ball", "ball radius", 0.1)],
+    [
+        ("pivot", "point of a rotary axis", -2.0),
+        pytest.param("ball", "ball radius", 0.1, marks=pytest.mark.slow),
+    ],
 )
 def test_a_wrong_number_is_named_with_what_to_write(
     name, mistake, true, tmp_path, capsys, unchanged

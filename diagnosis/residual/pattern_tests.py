@@ -108,12 +108,16 @@ class PatternTests:
         return tuple(patterns(self.complement.touches))
 
     @cached_property
+    def _functions(self) -> tuple[Array, ...]:
+        """Functions of every pattern at these touches, (R, K) each."""
+        return tuple(p.whitened(self.complement, self.rows) for p in self.known)
+
+    @cached_property
     def _freed(self) -> tuple[Freed, ...]:
         """Every pattern freed of the fitted model."""
         Q, residual = self.complement.Q[self.rows], self.complement.residual[self.rows]
         out = []
-        for pattern in self.known:
-            F = pattern.whitened(self.complement, self.rows)
+        for F in self._functions:
             B = Q.T @ F
             out.append(Freed(F.T @ F - B.T @ B, F.T @ residual))
         return tuple(out)
@@ -124,8 +128,8 @@ class PatternTests:
             yield from self._freed
             return
         A = effects.A[self.rows].T
-        for pattern, freed in zip(self.known, self._freed, strict=True):
-            E = effects.lower_solve(A @ pattern.whitened(self.complement, self.rows))
+        for F, freed in zip(self._functions, self._freed, strict=True):
+            E = effects.lower_solve(A @ F)
             yield Freed(freed.gram - E.T @ E, freed.along - E.T @ effects.along)
 
     def of(self, effects: EffectSet) -> list[TestedPattern]:
