@@ -22,6 +22,7 @@ def rivals_of(criterion: Criterion) -> tuple[Rival, ...]:
         return others.all()
 
 
+@pytest.mark.slow  # the other process has `twin/test_beside`, the figures `test_families_stay`
 def test_the_same_artefacts_in_the_same_order_to_the_last_bit(
     criterion: Criterion, monkeypatch: pytest.MonkeyPatch
 ) -> None:
