@@ -12,7 +12,6 @@ from matstd.diagnosis.laws.space import Space
 from matstd.diagnosis.residual import Bearer
 from matstd.twin.frames import Array
 from matstd.twin.laws import (
-    CLOCK,
     SHAPES,
     Driver,
     Factor,
@@ -62,9 +61,9 @@ def surface_laws(
 ) -> list[Candidate]:
     """Laws without a formula over two variables that do not separate: a ring, a diagonal.
 
-    Over the variables of the best products, too, since a screened surface has few waves. Of one
-    number alone: three directions of the standard have 387 coefficients. Not over the clock of the
-    run, whose laws another run may meet at any time.
+    Over the readings of the best products, too, since a screened surface has few waves. Of one
+    number alone: three directions of the standard have 387 coefficients. Over a temperature, which
+    follows the time, a surface takes the place of a law of the time.
     """
     ranked = sorted(formulas, key=lambda c: -c.score)
     products = [(c.bearer, c.law.drivers) for c in ranked if len(c.law.drivers) == 2]
@@ -73,7 +72,7 @@ def surface_laws(
         (bearer.carrier.name, *sorted(d.name for d in drivers)): (bearer, drivers)
         for bearer, drivers in tried
         if bearer.carrier.count == 1
-        and CLOCK not in drivers
+        and all(d.nature in ("linear", "rotary") for d in drivers)
         and all(waves_of(field, d).lengths[0] > 0.0 for d in drivers)
     }
     out = list[Candidate]()
