@@ -34,9 +34,9 @@ from simulator_further_laws import FURTHER, OUTSIDE
 from simulator_laws import FAMILIES, law_case
 
 from matstd.diagnosis.files import model_text, parsed_model
-from matstd.diagnosis.laws import Learning, learn_laws
+from matstd.diagnosis.laws import POLICY, Learning, LearntLaw, learn_laws
 from matstd.twin.files import read_run
-from matstd.twin.laws import Law, carrier_of
+from matstd.twin.laws import Law, carrier_of, law_of
 from matstd.twin.record import Run, without_copies
 from matstd.twin.units import UM
 
@@ -55,6 +55,7 @@ class Score:
     truth: str
     found: str
     carrier: bool
+    in_class: bool  # or that of a law which the run does not distinguish, over which it predicts
     variables: bool
     family: bool
     none: float
@@ -93,13 +94,16 @@ def variable(name: str) -> str:
     return name.replace("_", "-", 1)
 
 
-def is_right(found: Learning, hidden: dict[str, Any], law: Law) -> tuple[bool, bool, bool]:
-    """Whether carrier, variables and family of a law are those of a hidden one."""
+def is_right(found: Learning, hidden: dict[str, Any], one: LearntLaw) -> tuple[bool, ...]:
+    """Whether carrier, class of the carrier, variables and family are those of a hidden law."""
+    law = one.law
+    members = [own for effect, _ in one.members(POLICY) if (own := law_of(effect)) is not None]
     families = hidden.get("shapes") or [hidden.get("shape", "")]
     family = "*".join(sorted(f.shape.word for f in law.factors))
     alike = [hidden["carrier"], *(a[0] for a in hidden.get("carriers_alike", []))]
     return (
         any(is_alike(found, law, name) for name in alike),
+        any(is_alike(found, member, name) for member in members for name in alike),
         {f.driver.name for f in law.factors} == {variable(v) for v in hidden["variables"]},
         family in ["*".join(sorted(words.split("*"))) for words in families],
     )
@@ -142,10 +146,10 @@ def score(folder: Path) -> Score:
         true = left_of(plain, plain.deviation, Ordinary(plain.touches))
     hidden = truth["hidden"]
     names = [one.law.name for one in found.laws]
-    right = [not names] * 3
+    right = [not names] * 4
     if hidden:  # each hidden law is right if a learnt one is
-        each = [[is_right(found, law, one.law) for one in found.laws] for law in hidden]
-        best = [max(marks, default=(False,) * 3) for marks in each]
+        each = [[is_right(found, law, one) for one in found.laws] for law in hidden]
+        best = [max(marks, default=(False,) * 4) for marks in each]
         right = [all(marks) for marks in zip(*best, strict=True)]
     planted = " + ".join(f"{law['family']} {law['carrier']}" for law in hidden) or "-"
     law_names = ", ".join(names) or "-"
@@ -198,10 +202,8 @@ def make_deleted(count: int, seed: int, into: Path) -> list[Path]:
 
 
 def show(one: Score) -> None:
-    marks = "".join(
-        m if ok else "-"
-        for m, ok in zip("CVF", (one.carrier, one.variables, one.family), strict=True)
-    )
+    right = (one.carrier, one.in_class, one.variables, one.family)
+    marks = "".join(m if ok else "-" for m, ok in zip("CcVF", right, strict=True))
     verdict = "ok" if one.is_predicted else "half" if one.is_half else "poor"
     verdict = "clock" if one.is_clocked else verdict
     verdict = "WORSE" if one.is_worse else verdict
@@ -218,6 +220,7 @@ def counted(laws: list[Score]) -> str:
     others = [s for s in laws if not s.is_clocked]
     counts = {
         "carrier": sum(s.carrier for s in laws),
+        "in its class": sum(s.in_class for s in laws),
         "variables": sum(s.variables for s in laws),
         "family": sum(s.family for s in laws),
         f"of {len(others)} without a clock second run within 10 %": sum(
