@@ -36,7 +36,7 @@ from matstd.diagnosis.laws.screening import (
 )
 from matstd.diagnosis.laws.smooth import curve_laws, surface_laws
 from matstd.diagnosis.laws.space import Space
-from matstd.twin.laws import SHAPES, Driver, Factor
+from matstd.twin.laws import SHAPES, WORDS, Driver, Factor
 from matstd.twin.record import Run
 
 TOP_SINGLES, TOP_PAIRS, TOP_SQUARES = 14, 6, 2
@@ -77,6 +77,9 @@ REFINING = 0.5
 """Share of what a candidate gains that refinement may add: of 200 candidates the most was 0.5 and
 nine in ten gained less than 0.05. What could not be kept even so is not refined."""
 
+
+CORNER_PHASES = np.linspace(0.0, 2.0 * np.pi, 40, endpoint=False)
+"""Phases of a wave with corners that are tried at the period of a sine."""
 
 _Place = tuple[str, tuple[Driver, ...]]
 """Name of a carrier, with variables."""
@@ -151,6 +154,7 @@ def search_law(space: Space, ground: Ground, policy: LawPolicy) -> Searched:
     polished += _beside_best(space, field, polished)
     polished = _at_best_places(space, field, polished)
     polished += _with_edges(space, field, polished)
+    polished += _with_corners(space, field, polished)
     polished = [_charged(c, field, policy) for c in _distinct(polished)]
     drifts = [f for f in one if f.drivers[0].name == DRIFT][:1]
     beside = [f for f in drifts if all(f is not other for other in one[:3])]
@@ -234,6 +238,27 @@ def _with_edges(space: Space, field: Field, found: Sequence[Candidate]) -> list[
     there = candidate(space, field, best.bearer, parts)
     is_tried = any(c.law.name == there.law.name for c in found)
     return [] if is_tried else [refined(space, field, there)]
+
+
+def _with_corners(space: Space, field: Field, found: Sequence[Candidate]) -> list[Candidate]:
+    """The best sine over a variable as a square wave and as a saw-tooth of its period.
+
+    Between points of their grid these lose so much that refinement does not find back: a saw-tooth
+    of a cooler that gains 121 was taken for a square wave that gains 102.
+    """
+    sines = [c for c in found if [f.shape.word for f in c.law.factors] == ["sine"]]
+    best = max(sines, key=lambda c: c.score, default=None)
+    if best is None:
+        return []
+    ((factor, _),), (period,) = best.law.parts, best.law.places
+    out = list[Candidate]()
+    for word in ("square", "saw"):
+        if word in WORDS[factor.driver.nature]:
+            wave = Factor(SHAPES[word], factor.driver)
+            parts = [Part(wave, (period, float(phase))) for phase in CORNER_PHASES]
+            each = [candidate(space, field, best.bearer, [part]) for part in parts]
+            out.append(refined(space, field, max(each, key=lambda c: c.score)))
+    return out
 
 
 def _gain(one: Candidate, space: Space) -> float:
