@@ -13,6 +13,7 @@ from matstd.probe_paths.campaign import check_moves, evaluate
 from matstd.probe_paths.campaign.collisions import SMALLEST_GAP
 from matstd.probe_paths.control import Move
 from matstd.probe_paths.plan import ToolClearance
+from matstd.probe_paths.plan.bodies import Bodies
 from matstd.probe_paths.plan.clearance import Stage
 from matstd.twin.errors import BadFile
 from matstd.twin.frames import apply, inverse
@@ -86,6 +87,15 @@ def test_a_start_inside_the_standard_is_found(programs, chain, small):
     read = as_read(programs, chain, text=text)
     with pytest.raises(BadFile, match="a gap of"):
         check_moves(read, small, chain)
+
+
+@pytest.mark.parametrize(
+    ("feature", "own"), [("S1", ["S1", "S1 stem"]), ("FF1", ["FF1"]), ("DATUM_A", ["BASE"])]
+)
+def test_a_touch_may_come_close_to_what_carries_its_feature(feature, own) -> None:
+    names = np.array(["BASE", "CORE", "FF1", "S1", "S1 stem", "S2", "S2 stem"])
+    bodies = Bodies(hulls=None, name=names, on=np.full(len(names), ""), parts={})
+    assert names[bodies.rows_of(feature)].tolist() == own
 
 
 def test_a_feature_number_mixed_up_is_found_when_the_log_is_evaluated(

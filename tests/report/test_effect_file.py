@@ -4,9 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from unchanged import drawn
 
 from matstd.diagnosis.fit import fit_run
 from matstd.report.laws import effect_text, law_sentence
+from matstd.report.laws.law_page import draw_law
 from matstd.twin.library import ordinary_model, parse_effect
 from matstd.twin.model import Model, columns
 from matstd.twin.units import UM
@@ -86,3 +88,11 @@ def test_a_law_without_a_formula_is_a_table(name, measured) -> None:
     )
     found = columns([effect], run.touches)[:, 0] * size  # its expected size is the one found
     assert np.abs(found - expected).max() < 0.05 * np.abs(expected).max()
+
+
+@pytest.mark.parametrize("name", ["law(EYX,surface X,surface Y)", "law(EXX,lin Y,sign last-Y)"])
+def test_a_surface_is_drawn_as_a_map_and_a_reversal_from_one_side_to_the_other(
+    name, measured, unchanged
+) -> None:
+    learning, _, law = learnt(measured, name, ())
+    unchanged(drawn(draw_law(learning, law)) + "\n")
