@@ -183,11 +183,16 @@ def _searched(
     if not found.smooth:
         return found
 
+    def fitted(one: Candidate, gross: GrossErrors | None = None) -> Fit:
+        return white.fitted([*laws, _usual(one.law, one.bearer.alike)], gross=gross)
+
+    formula = found.candidates[0]
+    with_formula = fitted(formula)
+
     def odds(smooth: Candidate) -> float:
-        pair = [_usual(c.law, c.bearer.alike) for c in (smooth, found.candidates[0])]
-        fits = [white.fitted([*laws, law]) for law in pair]
-        gross = replace(fits[0].gross, rows=fits[0].gross.rows | fits[1].gross.rows)
-        return prediction_odds(*(white.fitted([*laws, law], gross=gross) for law in pair))
+        own = fitted(smooth).gross
+        gross = replace(own, rows=own.rows | with_formula.gross.rows)
+        return prediction_odds(fitted(smooth, gross), fitted(formula, gross))
 
     taken = {law.name for law in laws}
     new = [c for c in found.smooth if _usual(c.law, c.bearer.alike).name not in taken]
