@@ -12,6 +12,7 @@ from matstd.diagnosis.laws.space import Space
 from matstd.diagnosis.residual import Bearer
 from matstd.twin.frames import Array
 from matstd.twin.laws import (
+    ON_BALL,
     SHAPES,
     Driver,
     Factor,
@@ -72,7 +73,7 @@ def surface_laws(
         (bearer.carrier.name, *sorted(d.name for d in drivers)): (bearer, drivers)
         for bearer, drivers in tried
         if bearer.carrier.count == 1
-        and all(d.nature in ("linear", "rotary") for d in drivers)
+        and all(d.nature in ("linear", "rotary") and d.name not in ON_BALL for d in drivers)
         and all(waves_of(field, d).lengths[0] > 0.0 for d in drivers)
     }
     out = list[Candidate]()
