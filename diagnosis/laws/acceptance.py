@@ -98,7 +98,8 @@ def prediction_odds(one: Fit, other: Fit) -> float:
     """Log odds of a model against another by touches left out, by poses and by times: the lesser.
 
     ``log p = -1/2 (N log s^2 + log det V)``, V the covariance of the errors of all blocks and s^2
-    what they are over it: a vague prediction is charged for being vague. Both on the same rows.
+    what they are over it: an uncertain prediction is charged for its uncertainty. Both models use
+    the same rows.
     """
     return min(
         _log_predictive(one, groups(one)) - _log_predictive(other, groups(other))

@@ -175,9 +175,10 @@ def _tried(
 def _searched(
     white: Beginning, laws: Sequence[Law], fit: Fit, ground: Ground, policy: LawPolicy
 ) -> Searched:
-    """What a search finds beside laws, first the law that predicts touches left out.
+    """What a search finds beside laws, ranked by evidence and by touches left out.
 
-    A formula is to predict them at least as well as the best curve, and the best surface.
+    A formula comes first only if it predicts these at least as well as the best curve and the best
+    surface.
     """
     found = search_law(Space.of(fit), ground, policy)
     if not found.smooth:

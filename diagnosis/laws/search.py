@@ -98,7 +98,10 @@ class Searched:
     smooth: tuple[Candidate, ...]  # laws without a formula, where the first candidate has one
 
     def with_first(self, smooth: Candidate, odds: float) -> "Searched":
-        """A law without a formula first, those above it behind by log odds of a prediction."""
+        """The same with a law without a formula as the first choice.
+
+        Candidates of a higher score follow it, the first of them by the log odds of a prediction.
+        """
         behind = self.candidates[0].score - smooth.score + odds
         ranked = [
             replace(c, score=c.score - behind) if c.score > smooth.score else c
@@ -243,8 +246,8 @@ def _with_edges(space: Space, field: Field, found: Sequence[Candidate]) -> list[
 def _with_corners(space: Space, field: Field, found: Sequence[Candidate]) -> list[Candidate]:
     """The best sine over a variable as a square wave and as a saw-tooth of its period.
 
-    Between points of their grid these lose so much that refinement does not find back: a saw-tooth
-    of a cooler that gains 121 was taken for a square wave that gains 102.
+    Both lose so much between the points of their grid that refinement misses the best place: the
+    saw-tooth of a cooler, which gains 121, was taken for a square wave that gains 102.
     """
     sines = [c for c in found if [f.shape.word for f in c.law.factors] == ["sine"]]
     best = max(sines, key=lambda c: c.score, default=None)

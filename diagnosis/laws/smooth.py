@@ -62,9 +62,10 @@ def surface_laws(
 ) -> list[Candidate]:
     """Laws without a formula over two variables that do not separate: a ring, a diagonal.
 
-    Over the readings of the best products, too, since a screened surface has few waves. Of one
-    number alone: three directions of the standard have 387 coefficients. Over a temperature, which
-    follows the time, a surface takes the place of a law of the time.
+    Pairs of readings come from the screening and from the best products, since a screened surface
+    has few waves. Carriers have one number: three directions of the standard would have 387
+    coefficients. No variable is a temperature, which follows the time: such a surface was learnt
+    for a law of the time.
     """
     ranked = sorted(formulas, key=lambda c: -c.score)
     products = [(c.bearer, c.law.drivers) for c in ranked if len(c.law.drivers) == 2]
