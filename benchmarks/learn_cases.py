@@ -5,6 +5,7 @@
     python benchmarks/learn_cases.py --two 8 --seed 1       two laws at once
     python benchmarks/learn_cases.py --further 20 --seed 5  families that the learner never saw
     python benchmarks/learn_cases.py --outside 36 --seed 5  those without a formula in the grammar
+    python benchmarks/learn_cases.py --surfaces 18 --seed 1 functions of two readings, later ones
     python benchmarks/learn_cases.py --deleted 8 --seed 1   an effect whose driver is not recorded
     python benchmarks/learn_cases.py --empty 20 --seed 1    nothing hidden: no law may be found
 
@@ -30,7 +31,7 @@ from deleted_driver import column, simulated, without_column
 from harness import cases, parser_of  # puts the simulator on the path
 from simulator_case import Ordinary
 from simulator_experiment import MACHINES
-from simulator_further_laws import FURTHER, OUTSIDE
+from simulator_further_laws import FURTHER, OUTSIDE, SURFACES
 from simulator_laws import FAMILIES, law_case
 
 from matstd.diagnosis.files import model_text, parsed_model
@@ -242,6 +243,7 @@ def main() -> None:
     parser.add_argument("--two", type=int, default=0, help="number of cases with two laws at once")
     parser.add_argument("--further", type=int, default=0, help="number of cases of other families")
     parser.add_argument("--outside", type=int, default=0, help="number without a formula")
+    parser.add_argument("--surfaces", type=int, default=0, help="number of further surfaces")
     parser.add_argument("--deleted", type=int, default=0, help="number without their driver")
     parser.add_argument("--empty", type=int, default=0, help="number of cases with nothing hidden")
     parser.add_argument("--same-clock", action="store_true", help="clocks show the same times")
@@ -253,7 +255,8 @@ def main() -> None:
         pairs = [f"{FAMILIES[(5 * i) % 17]}+{FAMILIES[(5 * i + 8) % 17]}" for i in range(a.two)]
         other = [FURTHER[i % len(FURTHER)] for i in range(a.further)]
         # each turn begins one later, so that a family meets every machine
-        other += [OUTSIDE[(i + i // len(OUTSIDE)) % len(OUTSIDE)] for i in range(a.outside)]
+        for families, count in ((OUTSIDE, a.outside), (SURFACES, a.surfaces)):
+            other += [families[(i + i // len(families)) % len(families)] for i in range(count)]
         folders += make(
             [*named, *pairs, *other, *[None] * a.empty], a.seed, Path(scratch), a.same_clock
         )
@@ -262,9 +265,9 @@ def main() -> None:
         for folder in folders:
             scores.append(score(folder))
             show(scores[-1])
-    families = {s.name: s.truth.split(" ")[0] for s in scores}
-    outside = [s for s in scores if families[s.name] in OUTSIDE]
-    deleted = [s for s in scores if families[s.name] == DELETED]
+    planted = {s.name: s.truth.split(" ")[0] for s in scores}
+    outside = [s for s in scores if planted[s.name] in (*OUTSIDE, *SURFACES)]
+    deleted = [s for s in scores if planted[s.name] == DELETED]
     laws = [s for s in scores if s.truth != "-" and s not in (*outside, *deleted)]
     empty = [s for s in scores if s.truth == "-"]
     seconds = [s.seconds for s in scores]

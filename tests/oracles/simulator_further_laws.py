@@ -21,6 +21,9 @@ FURTHER = (
 )  # fmt: skip
 """Every further family by its word."""
 
+SURFACES = ("two_bumps", "bent_valley", "tilted_ellipse", "twist", "corner", "spiral")
+"""Functions of two readings that came after surfaces could be learnt."""
+
 
 def late(s):
     """Spindle temperature less 20 degC, by a first-order lag of 40 min."""
@@ -125,3 +128,33 @@ def further_families(rng, machine) -> dict[str, Family]:
         inside["half_wave"] = component("EZC", ("C",), ("half-wave",),
             lambda s: np.maximum(np.sin(s.q["C"] + phase), 0.0))  # fmt: skip
     return inside | outside
+
+
+def surfaces(rng, machine) -> dict[str, Family]:
+    """One function of two readings of every kind, its place drawn."""
+    A, B = (str(a) for a in rng.choice(machine.linear, 2, replace=False))
+    aside, turn = f"E{rng.choice(list('XYZ'))}{A}", rng.uniform(0.0, np.pi)
+    at = {"X": rng.uniform(-40, 40), "Y": rng.uniform(-30, 30), "Z": rng.uniform(-280, -220)}
+    if not machine.rotary:
+        at["Y"] -= 120.0
+
+    def law(formula):
+        return component(aside, (A, B), (), lambda s: formula(s.q[A] - at[A], s.q[B] - at[B]))
+
+    def turned(formula):
+        c, d = np.cos(turn), np.sin(turn)
+        return law(lambda x, y: formula(c * x + d * y, c * y - d * x))
+
+    def bump(x, y, width):
+        return np.exp(-(x**2 + y**2) / width**2)
+
+    return {
+        "two_bumps": law(lambda x, y: bump(x + 50, y + 30, 35) - 0.8 * bump(x - 45, y - 40, 40)),
+        "bent_valley": law(lambda x, y: np.exp(-(((y - (x / 12) ** 2 / 6 + 20) / 30) ** 2))),
+        "tilted_ellipse": turned(lambda u, v: np.exp(-((u / 80) ** 2) - (v / 25) ** 2)),
+        "twist": law(lambda x, y: np.tanh(x * y / 2500)),
+        "corner": turned(lambda u, v: 1 / (1 + np.exp(-u / 12)) / (1 + np.exp(-v / 12))),
+        "spiral": law(
+            lambda x, y: np.cos(np.arctan2(y, x) - np.hypot(x, y) / 35) * bump(x, y, 140.0) ** 0.5
+        ),
+    }

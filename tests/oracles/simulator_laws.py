@@ -209,9 +209,11 @@ def law_of(rng, machine, family):
     known = families(rng, machine)
     if family in known:
         return known[family]
-    from simulator_further_laws import further_families  # which is made of this module's pieces
+    # which is made of this module's pieces
+    from simulator_further_laws import SURFACES, further_families, surfaces
 
-    return further_families(rng, machine)[family]
+    made = surfaces if family in SURFACES else further_families
+    return made(rng, machine)[family]
 
 
 def drawn(rng, experiment, family, signal_to_noise, ordinary, label):
