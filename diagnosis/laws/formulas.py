@@ -223,12 +223,11 @@ def product_formulas(
     ]
     for which, best in ((1, FULL), (0, FULL // 2)):  # the factor that is scanned in full
         found.sort(key=lambda p: p.cost(space))
+        pairs = [(one.parts[1 - which], one.parts[which].factor.driver) for one in found[:best]]
         found += [
             product if which == 1 else product.turned
-            for one in found[:best]
-            for product in _products(
-                space, grids, bearer, one.parts[1 - which], one.parts[which].factor.driver
-            )
+            for part, driver in dict.fromkeys(pairs)
+            for product in _products(space, grids, bearer, part, driver)
         ]
     ranked = sorted(found, key=lambda p: p.cost(space))
     out: list[Candidate] = []
