@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.linalg import solve_triangular
+from scipy.linalg import cho_solve, solve_triangular
 from scipy.linalg.lapack import dtpmqrt, dtpqrt
 
 from matstd.twin.frames import Array, IntArray
@@ -120,12 +120,10 @@ def left_out(Q: Array, residual: Array, groups: Sequence[IntArray]) -> LeftOut:
         part, here = Q[rows], residual[rows]
         if len(rows) <= Q.shape[1]:
             L = np.linalg.cholesky(np.eye(len(rows)) - part @ part.T)
-            root = solve_triangular(L, np.eye(len(rows)), lower=True, check_finite=False)
-            error[rows] = root.T @ (root @ here)
+            error[rows] = cho_solve((L, True), here, check_finite=False)
         else:  # the same by the matrix of the other rows, which is the smaller one
             L = np.linalg.cholesky(np.eye(Q.shape[1]) - part.T @ part)
-            root = solve_triangular(L, part.T, lower=True, check_finite=False)
-            error[rows] = here + root.T @ (root @ here)
+            error[rows] = here + part @ cho_solve((L, True), part.T @ here, check_finite=False)
         squared += float(here @ error[rows])
         log_det -= 2.0 * float(np.log(np.diag(L)).sum())
     return LeftOut(error, squared, log_det)
