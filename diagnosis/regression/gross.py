@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.linalg import solve_triangular
 from scipy.special import gammainc, ndtri
 
 from matstd.diagnosis.policy import POLICY
@@ -48,16 +49,42 @@ def robust_scale(values: Array) -> float:
     return float(1.4826 * np.median(np.abs(values))) if len(values) else 0.0
 
 
-def _left_out_each(X: Array, y: Array, fit: Solution, used: Mask) -> tuple[Array, Array]:
-    """Prediction error of every row by the other used rows, and its variance, (N,) each."""
-    h = np.minimum(fit.leverage, 1.0 - 1e-9)
-    error, variance = np.zeros(len(y)), np.ones(len(y))
-    error[used], variance[used] = fit.residual / (1.0 - h), 1.0 / (1.0 - h)
-    out = ~used
-    if out.any():
-        error[out] = y[out] - X[out] @ fit.phi
-        variance[out] = 1.0 + (fit.spread(X[out]) ** 2).sum(axis=1)
-    return error, variance
+@dataclass(frozen=True, eq=False)
+class _Whole:
+    """The fit to all rows that may be used, from which any of them can be taken out again."""
+
+    W: Array  # rows of its Q, of the rows that may not be used their spread, (N, P)
+    rest: Array  # observed minus predicted, (N,)
+
+    @classmethod
+    def of(cls, X: Array, y: Array, fit: Solution, allowed: Mask) -> "_Whole":
+        """For whitened columns (N, P) and observations (N,)."""
+        W, rest = np.empty(X.shape), y - X @ fit.phi
+        W[allowed], W[~allowed] = fit.Q, fit.spread(X[~allowed])
+        return cls(W, rest)
+
+    def left_out_each(self, used: Mask, out: IntArray) -> tuple[Array, Array]:
+        """Prediction error of every row by the other used rows, and its variance, (N,) each.
+
+        Rows S that are taken out move the prediction of every row by ``W Q_S^T M^-1 r_S`` with
+        ``M = 1 - Q_S Q_S^T``, and widen it by as much: no new fit for a few touches.
+
+        Args:
+            used: Rows of the fit without those, (N,).
+            out: Numbers of the rows taken out.
+        """
+        own, error = (self.W**2).sum(axis=1), self.rest
+        if len(out):
+            Q = self.W[out]
+            # rows that alone decide a number leave no more than rounding
+            L = np.linalg.cholesky((1.0 + 1e-12) * np.eye(len(out)) - Q @ Q.T)
+            moved = solve_triangular(
+                L, np.column_stack([Q @ self.W.T, error[out]]), lower=True, check_finite=False
+            )
+            error = error + moved[:, :-1].T @ moved[:, -1]
+            own = own + (moved[:, :-1] ** 2).sum(axis=0)
+        left = np.maximum(1.0 - own, 1e-9)
+        return np.where(used, error / left, error), np.where(used, 1.0 / left, 1.0 + own)
 
 
 def shots(touches: Touches) -> IntArray:
@@ -98,12 +125,13 @@ def find_gross(
     n = int(allowed.sum())
     limit = float(-ndtri(0.5 * POLICY.false_alarm / max(n, 1)))
     used = allowed.copy()
-    fit = solve(X[used], y[used])
-    if fit.dof < MIN_DOF:
+    every = solve(X[used], y[used])
+    if every.dof < MIN_DOF:
         zero, nothing = np.zeros(len(y)), np.zeros(len(y), dtype=bool)
-        return fit, GrossErrors(rows=nothing, size=zero, score=zero, limit=limit)
+        return every, GrossErrors(rows=nothing, size=zero, score=zero, limit=limit)
+    whole = _Whole.of(X, y, every, allowed)
     for _ in range(MAX_GROSS_ROUNDS):
-        error, variance = _left_out_each(X, y, fit, used)
+        error, variance = whole.left_out_each(used, np.flatnonzero(allowed & ~used))
         z = error / np.sqrt(variance)
         scale = robust_scale(z[allowed])
         score = z / scale if scale > 0.0 else np.zeros_like(z)
@@ -117,16 +145,16 @@ def find_gross(
         used = wanted
         if n - int(wanted.sum()) > POLICY.gross_share * n:
             break
-        fit = solve(X[used], y[used])
     out = allowed & ~used
     if out.sum() <= POLICY.accident_share * n or _are_accidents(out, allowed, score / limit, shot):
+        fit = solve(X[used], y[used]) if out.any() else every
         return fit, GrossErrors(rows=out, size=error, score=score, limit=limit)
     # too many, or with a common cause: then all touches stay in the fit
     nothing = np.zeros(len(y), dtype=bool)
     kept = GrossErrors(
         rows=nothing, size=error, score=score, limit=limit, too_many=True, standing=out
     )
-    return solve(X[allowed], y[allowed]), kept
+    return every, kept
 
 
 def _are_accidents(out: Mask, allowed: Mask, score: Array, shot: IntArray) -> bool:

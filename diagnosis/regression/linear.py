@@ -12,9 +12,13 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.linalg import qr, solve_triangular
+from scipy.linalg import cho_solve, solve_triangular
+from scipy.linalg.lapack import dtpmqrt, dtpqrt
 
 from matstd.twin.frames import Array, IntArray
+
+BLOCK = 16
+"""Columns of a QR that are turned together; with 32 it takes a few percent longer."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,13 +75,14 @@ def solve(X: Array, y: Array) -> Solution:
         X: Columns times prior standard deviation over noise, (N, P).
         y: Observations over noise, (N,).
     """
-    n, p = X.shape
-    stacked = np.empty((n + p, p), order="F")
-    stacked[:n] = X
-    stacked[n:] = np.eye(p)
-    Q, R = qr(stacked, mode="economic", overwrite_a=True, check_finite=False)
-    phi = solve_triangular(R, Q[:n].T @ y, check_finite=False)
-    return Solution(np.ascontiguousarray(Q[:n]), R, phi, y - X @ phi)
+    if not X.size:
+        return Solution(X, np.eye(X.shape[1]), np.zeros(X.shape[1]), y)
+    # below the triangle that the prior is already: two thirds of the time of a QR of both
+    prior = np.eye(X.shape[1], order="F")
+    R, V, T, _ = dtpqrt(0, min(BLOCK, len(prior)), prior, X)
+    _, Q, _ = dtpmqrt(0, V, T, prior, np.zeros_like(X, order="F"), overwrite_b=True)
+    phi = solve_triangular(R, Q.T @ y, check_finite=False)
+    return Solution(np.ascontiguousarray(Q), R, phi, y - X @ phi)
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,12 +120,10 @@ def left_out(Q: Array, residual: Array, groups: Sequence[IntArray]) -> LeftOut:
         part, here = Q[rows], residual[rows]
         if len(rows) <= Q.shape[1]:
             L = np.linalg.cholesky(np.eye(len(rows)) - part @ part.T)
-            root = solve_triangular(L, np.eye(len(rows)), lower=True, check_finite=False)
-            error[rows] = root.T @ (root @ here)
+            error[rows] = cho_solve((L, True), here, check_finite=False)
         else:  # the same by the matrix of the other rows, which is the smaller one
             L = np.linalg.cholesky(np.eye(Q.shape[1]) - part.T @ part)
-            root = solve_triangular(L, part.T, lower=True, check_finite=False)
-            error[rows] = here + root.T @ (root @ here)
+            error[rows] = here + part @ cho_solve((L, True), part.T @ here, check_finite=False)
         squared += float(here @ error[rows])
         log_det -= 2.0 * float(np.log(np.diag(L)).sum())
     return LeftOut(error, squared, log_det)

@@ -1,5 +1,7 @@
 """A search that never has enough ends at its limit, and says so."""
 
+import pytest
+
 import matstd.diagnosis.search.search_loop as rounds
 from matstd.diagnosis.answer import diagnose
 from matstd.diagnosis.remarks import What, noticed
@@ -16,6 +18,7 @@ def found_in(run):
     return [e.name for e in d.found], noticed(What.SEARCH_ENDED, sets=MOST_SETS) in d.remarks
 
 
+@pytest.mark.slow
 def test_a_usual_search_is_far_from_its_limit(case, monkeypatch) -> None:
     made = []
 

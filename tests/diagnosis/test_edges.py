@@ -66,6 +66,7 @@ def test_a_slip_three_touches_from_an_edge_is_named(run, side, unchanged) -> Non
     unchanged(answer_text(d))
 
 
+@pytest.mark.slow
 def test_the_same_touches_scattered_are_gross_errors(run) -> None:
     deviation = run.deviation.copy()
     rows = in_time(run.touches, 1)[[40, 90, 170]]

@@ -78,6 +78,7 @@ def test_determined_parameters_are_freed_of_their_prior(known) -> None:
         )  # never better than if all else is known
 
 
+@pytest.mark.slow
 def test_stated_uncertainties_hold_over_random_machines(known) -> None:
     """Machines from the prior, noise as stated: errors over their uncertainty are standard normal.
 

@@ -277,6 +277,7 @@ def test_compare_with_a_model_of_the_same_machine(folder, tmp_path) -> None:
 # matstd diagnose
 
 
+@pytest.mark.slow
 def test_auto_finds_puts_in_and_goes_on_from_its_own_model(folder, tmp_path, capsys) -> None:
     """What was found goes into model.toml; begun with that, nothing is missing any more."""
     run, out, again = str(folder / "run.csv"), tmp_path / "out", tmp_path / "again"

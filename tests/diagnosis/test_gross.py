@@ -140,3 +140,22 @@ def test_the_error_is_reported_both_ways_where_many_stand_out() -> None:
     assert remark.touches == bad.sum() == fit.gross.rows.sum()
     assert 5.0 * remark.without < remark.whole
     assert "18 of 180 touches are outliers (10 %), scattered" in remark_sentence(remark)
+
+
+def test_every_size_is_the_error_of_a_fit_without_the_touch():
+    """Touches in the fit, chips and touches held out alike, each by a fit of its own."""
+    rng = np.random.default_rng(8)
+    X, y, allowed = 3.0 * rng.normal(size=(200, 6)), rng.normal(size=200), np.arange(200) < 180
+    y[[4, 60, 131]] += [12.0, -15.0, 20.0]
+    _, gross = find_gross(X, y, allowed)
+    assert np.flatnonzero(gross.rows).tolist() == [4, 60, 131]
+    z = np.empty(200)
+    for i in range(200):
+        others = allowed & ~gross.rows & (np.arange(200) != i)
+        A = np.vstack([X[others], np.eye(6)])  # the prior as further rows
+        phi = np.linalg.lstsq(A, np.concatenate([y[others], np.zeros(6)]), rcond=None)[0]
+        error = y[i] - X[i] @ phi
+        assert gross.size[i] == pytest.approx(error, rel=1e-6, abs=1e-9)
+        z[i] = error / np.sqrt(1.0 + X[i] @ np.linalg.solve(A.T @ A, X[i]))
+    scale = 1.4826 * np.median(np.abs(z[allowed]))
+    np.testing.assert_allclose(gross.score, z / scale, rtol=1e-6, atol=1e-9)

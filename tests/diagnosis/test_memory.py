@@ -167,7 +167,7 @@ def second_runs(clean, memory, draws):
         yield np.sqrt(np.mean(left**2)), fit.test_rms
 
 
-@pytest.mark.parametrize("memory", [Memory(0.7), *slow(None)], ids=["remembers", "white"])
+@pytest.mark.parametrize("memory", slow(Memory(0.7), None), ids=["remembers", "white"])
 def test_the_stated_error_is_that_of_another_run(clean, memory) -> None:
     """Runs of 780 touches: their plain errors scatter by 2.5 % (3 times as much with memory)."""
     plain, stated = np.array(list(second_runs(clean, memory, 12))).T

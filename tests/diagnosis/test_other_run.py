@@ -158,6 +158,7 @@ def test_what_the_probe_does_is_applied_where_the_same_probe_touched(visits, tmp
     assert "belongs to the probe of calm.csv" in remark_sentence(one)
 
 
+@pytest.mark.slow
 def test_lobes_of_a_head_predict_another_run_with_it(tmp_path):
     """Three lobes of 6 um, another day, a standard placed anew: with them noise is left."""
     rng = np.random.default_rng(23)

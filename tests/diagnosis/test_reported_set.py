@@ -98,12 +98,23 @@ def test_no_effect_stands_twice_when_two_classes_want_one_head(case, monkeypatch
 # --- figures made again from what is kept -----------------------------------------------------
 
 
+MADE_AGAIN = {
+    "white": (None, False),
+    "remembers": (Memory(0.4), True),
+    "counts for less": (Memory(0.6, is_filtered=False), False),
+}
+"""Memory of the noise, and whether rows are held out; `make proof` has every memory with both."""
+
+OTHERS = [
+    pytest.param(memory, not held_out, id=f"{name}, other rows", marks=pytest.mark.slow)
+    for name, (memory, held_out) in MADE_AGAIN.items()
+]
+
+
 @pytest.mark.parametrize(
-    "memory",
-    [None, Memory(0.4), Memory(0.6, is_filtered=False)],
-    ids=["white", "remembers", "counts for less"],
+    ("memory", "held_out"),
+    [*(pytest.param(*one, id=name) for name, one in MADE_AGAIN.items()), *OTHERS],
 )
-@pytest.mark.parametrize("held_out", [False, True], ids=["all rows", "some held out"])
 def test_a_fit_is_made_again(case, memory, held_out) -> None:
     run = without_copies(case(*LAG).run)
     if held_out:

@@ -28,7 +28,7 @@ except KeyboardInterrupt:
 
 WORK = {
     "Python": "while True: sum(range(1000))",
-    "a library": "np.linalg.svd(np.random.default_rng(0).random((9000, 9000)))",
+    "a library": "np.linalg.svd(np.random.default_rng(0).random((5000, 5000)))",
     "waits for a pool": "with ThreadPoolExecutor() as pool: pool.submit(time.sleep, 30.0)",
 }
 
@@ -38,7 +38,7 @@ WORK = {
     ("work", "number"),
     [
         ("Python", signal.SIGINT),
-        ("a library", signal.SIGINT),
+        pytest.param("a library", signal.SIGINT, marks=pytest.mark.slow),
         ("a library", signal.SIGTERM),
         ("waits for a pool", signal.SIGTERM),
     ],

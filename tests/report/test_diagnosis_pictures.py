@@ -364,6 +364,7 @@ def test_a_run_without_anything_hidden_says_so(case, tmp_path):
     assert f"{result.promise.same / UM:.2f} µm), and the noise is" in text
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("unrendered")
 def test_page_of_a_comparison_has_its_numbers(compared, tmp_path):
     found = compared

@@ -99,7 +99,7 @@ def test_every_engraved_dot_is_drawn(upright, drawn):
 def test_no_words_leave_their_column(drawn):
     """Tables and notes end where their column ends, and the title block where the sheet does."""
     drawn.figure.set_dpi(36)
-    drawn.figure.canvas.draw()
+    drawn.figure.draw_without_rendering()
     edge = drawn.axes.transData.transform((drawn.right, 0.0))[0]
     column = drawn.axes.transData.transform((drawn.right - COLUMN, 0.0))[0]
     inside = drawn.axes.transData.transform((drawn.right + 1.0, 0.0))[0]
@@ -162,7 +162,7 @@ def test_a_name_keeps_clear_of_what_is_drawn():
 
 def test_nothing_leaves_the_paper(drawn):
     drawn.figure.set_dpi(36)  # as good as any: what is looked at scales with it
-    drawn.figure.canvas.draw()
+    drawn.figure.draw_without_rendering()
     sheet = drawn.figure.bbox
     for artist in (*drawn.axes.texts, *drawn.axes.patches):
         box = artist.get_window_extent()

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from matstd.twin.errors import NotReachable, ShapeMismatch
-from matstd.twin.frames import Array, apply, inverse, pose, rotation, turned_about
+from matstd.twin.frames import Array, apply, inverse, pose, rotation, skew, turned_about
 from matstd.twin.machine.chain import Chain
 from matstd.twin.machine.contribution import Contribution, Where
 from matstd.twin.machine.link import Link
@@ -166,17 +166,13 @@ def reach(chain: Chain, q: Array, length: Array | float) -> Reach:
     q = checked_readings(chain, q)
     T_machine_carrier, T_machine_table, T_machine_tool = carriers(chain, q)
     tip_machine = apply(T_machine_tool, tip_in_tool(length, len(q)))
-    twist = np.empty((len(q), len(chain.links), 6, 3))
-    R_machine_table = T_machine_table[:, :3, :3]
-    for i, link in enumerate(chain.links):
-        T_carrier = T_machine_carrier[:, i]
-        # rows are the carrier's x, y, z in table coordinates
-        axes = np.einsum("nji,njk->nki", R_machine_table, T_carrier[:, :3, :3])
-        local = np.einsum("nji,nj->ni", T_carrier[:, :3, :3], tip_machine - T_carrier[:, :3, 3])
-        lever = local - _lever_point(link, _readings_of(chain, link, q))
-        arm = np.einsum("nk,nki->ni", lever, axes)
-        twist[:, i, :3] = axes
-        twist[:, i, 3:] = np.cross(axes, arm[:, None, :])
+    R_carrier, origin = T_machine_carrier[..., :3, :3], T_machine_carrier[..., :3, 3]
+    # rows are the carrier's x, y, z in table coordinates
+    axes = np.swapaxes(R_carrier, -1, -2) @ T_machine_table[:, None, :3, :3]
+    local = np.einsum("nlji,nlj->nli", R_carrier, tip_machine[:, None] - origin)
+    points = [_lever_point(link, _readings_of(chain, link, q)) for link in chain.links]
+    arm = np.einsum("nlk,nlki->nli", local - np.stack(points, axis=1), axes)
+    twist = np.concatenate([axes, axes @ skew(arm)], axis=2)
     return Reach(twist, place_as_twist(chain, q) @ twist)
 
 
