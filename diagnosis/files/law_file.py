@@ -28,6 +28,7 @@ def law_table(
         "touches": len(fit.run),
         "noise_um": float(np.median(fit.u)) / UM,
         "stated_noise_um": float(np.median(fit.run.u)) / UM,
+        "gross_errors": [int(line) for line in fit.run.line[fit.gross.rows]],
         "laws": [
             _law(learning, one, name)
             for one, name in zip(learning.laws, learning.effect_names, strict=True)

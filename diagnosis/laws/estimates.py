@@ -9,7 +9,7 @@ from matstd.diagnosis.fit import Fit, fit_run
 from matstd.diagnosis.laws.learnt import Learning
 from matstd.diagnosis.regression import GrossErrors
 from matstd.twin.frames import Array
-from matstd.twin.laws import Driver, Law, surface_columns
+from matstd.twin.laws import CLOCK, Driver, Law, surface_columns
 from matstd.twin.model import Model, columns
 from matstd.twin.record import Run, with_commanded, without_copies
 
@@ -169,6 +169,8 @@ class SecondRun:
     # with those besides that belong to the first run, as if what drives them had kept its times;
     # None where there are none
     clocked: float | None = None
+    is_clock: bool = True  # whether one of those is a law of the time
+    gross: tuple[int, int] = (0, 0)  # touches left out as gross errors, without and with the laws
 
     @property
     def is_better(self) -> bool:
@@ -205,12 +207,15 @@ def second_run(learning: Learning, run: Run) -> SecondRun:
     def beside(known: Array | float, gross: GrossErrors | None = None) -> Fit:
         return fit_beside(known, run, learning.before.model, gross)
 
-    learnt, clocked = beside(learning.predicted(run)), None
-    if not all(one.travels for one in learning.laws):
+    without, learnt, clocked = beside(0.0), beside(learning.predicted(run)), None
+    of_run = [one.law for one in learning.laws if not one.travels]
+    if of_run:
         clocked = error_left(beside(learning.predicted(run, is_clock_kept=True), learnt.gross))
     return SecondRun(
         touches=len(run),
-        without=error_left(beside(0.0)),
+        without=error_left(without),
         learnt=error_left(learnt),
         clocked=clocked,
+        is_clock=any(driver == CLOCK for law in of_run for driver in law.drivers),
+        gross=(int(without.gross.rows.sum()), int(learnt.gross.rows.sum())),
     )

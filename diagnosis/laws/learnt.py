@@ -59,6 +59,11 @@ class LearntLaw:
         return self.library is not None and self.score - self.library.score < AS_WELL
 
     @property
+    def is_behind_library(self) -> bool:
+        """Whether an effect of the library explains the same better."""
+        return self.library is not None and self.library.score - self.score > AS_WELL
+
+    @property
     def run_odds(self) -> float:
         """Log odds against the nearest of all laws that belong to the run alone."""
         near = (r.log_odds for r in self.rivals if r.law.belongs_to == "run")

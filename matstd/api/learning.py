@@ -21,12 +21,15 @@ from matstd.diagnosis import laws
 from matstd.diagnosis.files import SavedModel, model_text, parsed_model
 from matstd.diagnosis.fit import prior_for
 from matstd.diagnosis.geometry import LearntGeometry, learnt_geometry
-from matstd.diagnosis.laws import SecondRun, learn_laws, second_run
+from matstd.diagnosis.laws import SecondRun, learn_laws
 from matstd.diagnosis.next_visit import VisitPlan
+from matstd.diagnosis.remarks import remarks
 from matstd.diagnosis.search import DiagnosisTask, refined_named
 from matstd.options import GEOMETRY
 from matstd.report.laws import effect_text, law_sentence, no_law_sentence, write_law_page
 from matstd.report.run_view import Framed, learnt_view
+from matstd.report.words import remark_sentence
+from matstd.twin.errors import BadArgument
 from matstd.twin.files import write_whole
 from matstd.twin.frames import Array
 from matstd.twin.model import Model
@@ -74,6 +77,11 @@ class LearntLaws(Saveable, laws.Learning):
         """Text of `effect.py`; "" where no law was learnt."""
         return effect_text(self, self.title) if self.laws else ""
 
+    @property
+    def remarks(self) -> list[str]:
+        """What else is to be known of the run: gross errors left out, noise, few touches."""
+        return [remark_sentence(one) for one in remarks(self.after, self.before)]
+
     @cached_property
     def visit(self) -> VisitPlan:
         """The visit after which the odds between the laws and their rivals are largest."""
@@ -96,7 +104,8 @@ class LearntLaws(Saveable, laws.Learning):
         """Write the page into an existing folder."""
         with deviations_in(self.after.run.touches.deviation_unit):
             live = learnt_view(self, self.title, self.body)
-            write_law_page(self, folder, self.title, self.visit, self.second, live)
+            notes = self.remarks
+            write_law_page(self, folder, self.title, self.visit, self.second, live, notes)
 
 
 def learn(
@@ -104,7 +113,7 @@ def learn(
     model: StartingModel = GEOMETRY,
     *,
     add: Sequence[str] = (),
-    second: Run | str | Path | None = None,
+    second_run: Run | str | Path | None = None,
     pitch: Mapping[str, float] | None = None,
     standard: Probed = None,
 ) -> LearntLaws:
@@ -115,14 +124,14 @@ def learn(
         model: Starting model: `"geometry"`, `"setup"`, a model, or the path of a model file, whose
             effects are fitted anew.
         add: Effects that are in the model besides, by name.
-        second: Another run of the machine, in which the laws are tried.
+        second_run: Another run of the machine, in which the laws are tried.
         pitch: Pitches of screws or scales by axis, mm.
         standard: What was probed, for the page: a standard, or the path of its file or of a drawing
             (STL, OBJ, PLY, STEP; mm, artefact frame). `standard.toml` beside the run without it.
 
     Raises:
         BadFile: A file that cannot be read, or a model of another machine.
-        BadArgument: A name that means nothing here.
+        BadArgument: A name that means nothing here, or a second run that is one of the first.
         NotEnoughData: So few touches that nothing can be said.
 
     Example:
@@ -133,11 +142,13 @@ def learn(
     same = "so that its estimates are made anew: no touch counts twice"
     run, start, _, title = starting_run(runs, model, same, pitch=pitch)
     run, body = probed_body(standard, runs, run)
-    other = read_run(second) if isinstance(second, str | Path) else second
+    other = read_run(second_run) if isinstance(second_run, str | Path) else second_run
+    if other is not None and not set(run.fingerprints).isdisjoint(other.fingerprints):
+        raise BadArgument("second_run", "has touches that the laws are learnt from", "another run")
     added = named_effects(add, start.effects, run)
     if added:  # a time constant at a point of its grid leaves a law that is none
         task = DiagnosisTask(run, start, prior_for(run, start))
         added = [sized.effect for sized in refined_named(task, added)]
     found = learn_laws(run, Model(start.chain, (*start.effects, *added)))
-    said = None if other is None or not found.laws else second_run(found, other)
+    said = None if other is None or not found.laws else laws.second_run(found, other)
     return extended(LearntLaws, found, second=said, title=title, body=body)

@@ -85,8 +85,9 @@ _MEANS = (
     "and a named effect with the same form may replace it."
 )
 _NEXT = (
-    "Give the law its name in effect.py, and try it on another run: `matstd compare RUN.csv "
-    "--model model.toml --effects effect.py`; only then compensate with it."
+    "Try the law on another run: `matstd compare RUN.csv --model model.toml`; only then compensate "
+    "with it. Give it its name in effect.py, and fit it anew by that name: `matstd diagnose "
+    "RUN.csv --effects effect.py --add NAME`."
 )
 _VISIT = (
     "To distinguish the law from its rivals, probe `next_visit.csv` and learn from both runs: "
@@ -106,8 +107,10 @@ def write_law_page(
     visit: VisitPlan,
     second: SecondRun | None,
     live: LiveView | None = None,
+    remarks: Sequence[str] = (),
 ) -> None:
     """Write `report.html` and its pictures into a folder; in `live` the laws are switched."""
+    noted = [Section("Remarks on the run", items=list(remarks))] if remarks else []
     lead, means, what_next = _head(learning, visit, title)
     page = Page(
         heading=f"What the model leaves of {title}",
@@ -115,7 +118,7 @@ def write_law_page(
         means=means,
         next=what_next,
         key=_key(learning, second),
-        sections=law_sections(learning, visit, second),
+        sections=[*law_sections(learning, visit, second), *noted],
         foot=[_FOOT],
         live=live,
     )
@@ -204,6 +207,9 @@ def _rivals(learning: Learning, one: LearntLaw) -> Section:
         ]
         for i, (law, odds) in enumerate(shown[: learning.policy.most_rivals + 1])
     ]
+    if one.library is not None and one.library.effect.name in members:
+        name, odds = one.library.effect.name, odds_words(one.score - one.library.score)
+        rows.append([name, "the library", "", odds, f"{100 * members[name]:.0f} %"])
     columns = ("formula", "carrier", "variables", "odds against it", "share of predictions")
     return Section("Rivals", sentences=[_ALIKE], table=Table(columns, rows, best=[0]), is_part=True)
 
@@ -219,7 +225,7 @@ def _held_out(learning: Learning, second: SecondRun | None) -> Section:
         rows.append([f"second run, {second.touches} touches", microns(second.without),
                      microns(second.learnt)])  # fmt: skip
         if second.clocked is not None:
-            rows.append(["the same, with all laws at the times of this run",
+            rows.append(["the same, with all laws",
                          microns(second.without), microns(second.clocked)])  # fmt: skip
         notes = [second_run_sentence(second)]
     caption = "Error of touches that were left out, root mean square"

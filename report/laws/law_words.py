@@ -281,6 +281,8 @@ def library_sentence(one: LearntLaw) -> str:
     if one.library is None:
         return ""
     name, odds = one.library.effect.name, one.score - one.library.score
+    if one.is_of_library and not one.is_behind_library:
+        return f"The library explains it as well: {name} (odds {odds_words(odds)} for the law)."
     if odds < 0.0:
         return (
             f"The library explains it better: {name} (odds {odds_words(-odds)}). Take that effect: "

@@ -36,6 +36,14 @@ def run_sentence(one: LearntLaw) -> str:
 def second_run_sentence(second: SecondRun) -> str:
     """What a second run says."""
     words = f"A second run ({second.touches} touches): {microns(second.without)} without the law"
+    if any(second.gross):
+        out = "{} of its touches are gross errors without the law and {} with it, and left out"
+        return f"{_second_run(second, words)} {out.format(*second.gross)}."
+    return _second_run(second, words)
+
+
+def _second_run(second: SecondRun, words: str) -> str:
+    """Errors after the first of them, and what they say."""
     if second.clocked is None:
         words += f", {microns(second.learnt)} with it"
         if second.is_better:
@@ -43,6 +51,10 @@ def second_run_sentence(second: SecondRun) -> str:
         return f"{words}: the law does not hold there. Do not use it to predict."
     if second.learnt != second.without:
         words += f", {microns(second.learnt)} with those that hold for every run"
+    if not second.is_clock:
+        words += f", {microns(second.clocked)} with those that belong to the first run"
+        hold = "hold here, too" if second.is_clock_kept else "do not hold here"
+        return f"{words}, which {hold}."
     words += f", {microns(second.clocked)} if what the run did not record kept its times"
     if second.is_clock_kept:
         return f"{words}: it did. What drives it begins with the run or its program."

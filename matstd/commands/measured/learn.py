@@ -35,7 +35,7 @@ def run(args: argparse.Namespace) -> int:
             args.run_files,
             starting_model(args),
             add=args.add,
-            second=args.second_run,
+            second_run=args.second_run,
             pitch=pitches(args),
             standard=args.standard,
         )
@@ -55,6 +55,10 @@ def _next(args: argparse.Namespace, found: LearntLaws) -> tuple[str, str]:
     if not found.laws:
         words = called("learn", *args.run_files, "again.csv", "-o", again)
         return words, "after another run that records what could be the cause"
+    named = [one.library.effect.name for one in found.laws if one.is_of_library and one.library]
+    if named:
+        words = called("diagnose", *args.run_files, "--add", *named, "-o", again)
+        return words, "the effect of the library that explains as much as the law, or more"
     if found.visit.touches is not None:
         words = called("learn", *args.run_files, "visit.csv", "-o", again)
         plan = out / "next_visit.csv"
@@ -89,7 +93,7 @@ def _report(args: argparse.Namespace, found: LearntLaws) -> None:
     say_each(visit_sentences(found.visit))
     if found.second is not None:
         say(f"- {second_run_sentence(found.second)}")
-    say_each(found.after.run.remarks)
+    say_each(found.remarks)
     effect = "effect.py (--effects)" if found.laws else ""
     visit = "" if found.visit.touches is None else "next_visit.csv"
     say_files(args, effect, visit, "law.json", "model.toml")
