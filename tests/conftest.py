@@ -5,7 +5,7 @@ import os
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -111,14 +111,16 @@ def _as_in_a_test():
     share the cores: nothing is done in a further process, where what a test has patched would not
     be. Pictures have a fifth of the dots. The Monte Carlo counts in numpy: its loops take numba
     half a minute to compile, and `compiled_loops` brings them back for the tests that compare the
-    two.
+    two. The installed packages are looked through for effects once, not by every command.
     """
     from matstd.sensitivity.montecarlo import lengths
+    from matstd.twin.library import catalogue
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("matstd.progress.PERIOD", 1e6)
         patch.setattr("matstd.twin.beside.CORES", 1)
         patch.setattr("matstd.report.style._DPI", 60)
+        patch.setattr(catalogue, "entry_points", cache(catalogue.entry_points))
         compiled_count = lengths.compiled_count
         patch.setattr(lengths, "compiled_count", lambda: None)
         yield compiled_count

@@ -2,7 +2,11 @@
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Any
+from functools import cache
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from threadpoolctl import ThreadpoolController
 
 Progress = Callable[[str, int, int], None]
 """Receives the name of the work, the amount done and the total."""
@@ -31,11 +35,17 @@ def one_blas_thread() -> Iterator[None]:
     would then only wait for one another. On two busy cores the relaxed problem of a placement took
     7.1 s of processor time with two threads and 1.3 s with one.
     """
-    import scipy.linalg  # noqa: F401  # its own BLAS is limited only once it is loaded
-    from threadpoolctl import threadpool_limits
-
-    with threadpool_limits(1, user_api="blas"):
+    with _blas().limit(limits=1, user_api="blas"):
         yield
+
+
+@cache
+def _blas() -> "ThreadpoolController":
+    """The libraries for products of matrices; to look for them takes five milliseconds."""
+    import scipy.linalg  # noqa: F401  # its own BLAS is limited only once it is loaded
+    from threadpoolctl import ThreadpoolController
+
+    return ThreadpoolController()
 
 
 def compiled_loop(function: Callable[..., None], **options: Any) -> Callable[..., None] | None:

@@ -161,7 +161,8 @@ def best_box(measures: Sequence[Measure], known: Sequence[Bounded], n: int) -> F
     @cache
     def largest(m: int, v: int, beside: frozenset[tuple[int, Bins]]) -> tuple[float, Bins]:
         """The largest gain by bins of one variable within bins of others."""
-        gains = measures[m].gains(rows_in(known, dict(beside), n), known[v])
+        # boxes of the same touches gain alike: the first one counts, whatever rounding says
+        gains = measures[m].gains(rows_in(known, dict(beside), n), known[v]).round(9)
         i, k = np.unravel_index(int(np.argmax(gains)), gains.shape)
         return float(gains[i, k]), (int(i), int(k))
 
