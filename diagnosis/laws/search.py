@@ -36,8 +36,8 @@ from matstd.diagnosis.laws.screening import (
 )
 from matstd.diagnosis.laws.smooth import curve_laws, surface_laws
 from matstd.diagnosis.laws.space import Space
-from matstd.twin.laws import SHAPES, WORDS, Driver, Factor
-from matstd.twin.record import Run
+from matstd.twin.laws import SHAPES, WORDS, Driver, Factor, Law
+from matstd.twin.record import Run, Touches
 
 TOP_SINGLES, TOP_PAIRS, TOP_SQUARES = 14, 6, 2
 """Carriers with one variable, with two, and with one twice, for which formulas are looked for."""
@@ -164,9 +164,8 @@ def search_law(space: Space, ground: Ground, policy: LawPolicy) -> Searched:
     polished = _at_best_places(space, field, polished)
     polished += _with_edges(space, field, polished)
     polished += _with_corners(space, field, polished)
-    polished = [
-        _charged(c, field, policy) for c in _distinct(polished) if _is_seen(c, space, field)
-    ]
+    used = space.touches[space.used]
+    polished = [_charged(c, field, policy) for c in _distinct(polished) if _is_seen(c.law, used)]
     drifts = [f for f in one if f.drivers[0].name == DRIFT][:1]
     beside = [f for f in drifts if all(f is not other for other in one[:3])]
     curves = curve_laws(space, field, [*one[:3], *beside], polished, policy)
@@ -272,12 +271,14 @@ def _with_corners(space: Space, field: Field, found: Sequence[Candidate]) -> lis
     return out
 
 
-def _is_seen(one: Candidate, space: Space, field: Field) -> bool:
+def _is_seen(law: Law, touches: Touches) -> bool:
     """Whether touches show a law about as large as it may be within the ranges of its variables."""
-    if len(one.law.drivers) < 2:
+    if len(law.drivers) < 2:
         return True
-    columns = [columns_of(field, space, [part_of(one.law, i)])[space.used] for i in (0, 1)]
-    first, second = (np.linalg.norm(c, axis=1) for c in columns)
+    first, second = (
+        np.linalg.norm(f.shape.values(f.driver.values(touches), *law.places[own]), axis=0)
+        for f, own in law.parts
+    )
     return bool(first.max() * second.max() < MOST_UNSEEN * (first * second).max())
 
 

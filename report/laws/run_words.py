@@ -1,7 +1,7 @@
 """Whether a law is expected in another run, in words, and what a second run says of it."""
 
 from matstd.diagnosis.laws import POLICY, LearntLaw, SecondRun
-from matstd.report.numbers import microns, odds_words
+from matstd.report.numbers import microns, odds_words, plural
 from matstd.twin.laws import CLOCK
 
 _OF_ONE_RUN = (
@@ -36,10 +36,10 @@ def run_sentence(one: LearntLaw) -> str:
 def second_run_sentence(second: SecondRun) -> str:
     """What a second run says."""
     words = f"A second run ({second.touches} touches): {microns(second.without)} without the law"
-    if any(second.gross):
-        out = "{} of its touches are gross errors without the law and {} with it, and left out"
-        return f"{_second_run(second, words)} {out.format(*second.gross)}."
-    return _second_run(second, words)
+    without, learnt = second.gross
+    also = f" without the law, {learnt} with it" if without != learnt else ""
+    out = f" Left out as gross errors: {plural(without, 'touch')}{also}."
+    return _second_run(second, words) + (out if without or learnt else "")
 
 
 def _second_run(second: SecondRun, words: str) -> str:

@@ -1,0 +1,94 @@
+"""What is said beside a law: of the touches left out, of a second run, of the library."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from simulator_experiment import MACHINES
+
+from matstd import learn
+from matstd.api.learning import LearntLaws
+from matstd.api.saved import extended
+from matstd.diagnosis.fit import fit_run
+from matstd.diagnosis.laws import SecondRun
+from matstd.diagnosis.laws.library import LibraryEffect
+from matstd.diagnosis.laws.search import _is_seen
+from matstd.report.laws import second_run_sentence
+from matstd.report.laws.law_page import law_sections
+from matstd.report.laws.law_words import library_sentence
+from matstd.twin.errors import BadArgument
+from matstd.twin.library import ordinary_model, parse_effect
+from matstd.twin.units import UM
+
+
+@pytest.mark.parametrize(
+    ("second", "said"),
+    [
+        (SecondRun(90, 0.9 * UM, 0.6 * UM), "0.90 µm without the law, 0.60 µm with it."),
+        (
+            SecondRun(90, 0.6 * UM, 0.6 * UM, gross=(8, 5)),
+            "Do not use it to predict. Left out as gross errors: 8 touches without the law, 5 with "
+            "it.",
+        ),
+        (
+            SecondRun(90, 0.9 * UM, 0.9 * UM, 0.6 * UM, is_clock=False),
+            "0.60 µm with those that belong to the first run, which hold here, too.",
+        ),
+        (
+            SecondRun(90, 0.9 * UM, 0.9 * UM, 1.1 * UM, is_clock=False, gross=(1, 1)),
+            "which do not hold here. Left out as gross errors: 1 touch.",
+        ),
+    ],
+)
+def test_a_second_run_is_said_to_hold_or_not(second, said) -> None:
+    assert second_run_sentence(second).endswith(said)
+
+
+def test_a_run_is_no_second_run_of_itself(stylus, tmp_path) -> None:
+    (tmp_path / "machine.toml").write_text(MACHINES["hmc1995"], encoding="utf-8")
+    for name, text in zip(("run", "two"), stylus[0], strict=False):
+        (tmp_path / f"{name}.csv").write_text(text, encoding="utf-8")
+    run, two = (tmp_path / f"{name}.csv" for name in ("run", "two"))
+    for first in (run, [run, two]):
+        with pytest.raises(BadArgument, match="second_run has touches that the laws are learnt"):
+            learn(first, second_run=run)
+
+
+def test_touches_left_out_are_named_by_their_lines(stylus) -> None:
+    run = stylus[2].before.run
+    deviation = run.deviation.copy()
+    deviation[17] += 30.0 * UM
+    after = fit_run(replace(run, deviation=deviation), ordinary_model(run.touches.chain))
+    assert after.gross.rows[17]
+    said = extended(LearntLaws, replace(stylus[2], after=after), title="run.csv").remarks
+    (gross,) = [line for line in said if "left out" in line]
+    assert "outside the prediction" in gross
+    assert str(run.line[17]) in gross
+
+
+def test_an_effect_of_the_library_has_its_row_and_its_word(stylus) -> None:
+    """A law that an effect explains as well or better is not stated as if it stood alone."""
+    found = stylus[2]
+    one = replace(found.laws[0], rivals=(), law=replace(found.laws[0].law, is_of_run=False))
+    one = replace(one, law=parse_effect("law(EZX,bump Y)", found.before.run.touches.chain))
+    effect = parse_effect("backlash(X)", found.before.run.touches.chain)
+    for ahead, said in ((-9.0, "nearest effect"), (0.5, "explains it as well"), (3.0, "better")):
+        law = replace(one, library=LibraryEffect(effect, one.score + ahead))
+        assert said in library_sentence(law)
+        shares = {each.name: share for each, share in law.members(found.policy)}
+        assert ("backlash(X)" in shares) == (ahead > -4.0)
+    sections = law_sections(replace(found, laws=(found.laws[0],)), None)
+    assert any(s.title == "Rivals" for s in sections)
+
+
+@pytest.mark.parametrize(("width", "is_seen"), [(500.0, True), (20.0, False)])
+def test_a_product_is_largest_near_a_touch(stylus, width, is_seen) -> None:
+    """Of two exponentials into a corner the largest in the box, one, is at the corner itself."""
+    touches = stylus[2].before.run.touches
+    x, z = touches.reading("X"), touches.reading("Z")
+    at_touches = np.exp(-(x.max() - x) / width - (z.max() - z) / width)
+    assert (3.0 * at_touches.max() > 1.0) == is_seen
+    places = (float(x.max()), -width, float(z.max()), -width)
+    law = parse_effect("law(EXX,exp X,exp Z)", touches.chain).tuned(*places)
+    np.testing.assert_allclose(law.amounts(touches)[0], at_touches)
+    assert _is_seen(law, touches) == is_seen
