@@ -15,6 +15,7 @@ from matstd.report.effects import (
     words_of_name,
 )
 from matstd.report.identifiability.identification_file import identification_table
+from matstd.report.plots.effect_pictures import _named
 from matstd.twin.library import parse_effect
 
 LAGS = ["thermal-lag(EZZ)", "thermal-lag(EZY)", "thermal-lag(EZX)", "thermal-lag(EZB)"]
@@ -41,6 +42,12 @@ def test_a_class_that_differs_in_its_body_alone_is_reported_as_one() -> None:
         "thermal-lag(EZZ) cannot be distinguished from thermal-lag(EZY), thermal-lag(EZX) and "
         "thermal-lag(EZB)"
     )
+
+
+def test_a_bar_has_its_title_above_its_name_and_a_name_alone_once() -> None:
+    effect = parse_effect("backlash(X)", made_up("hsm600u").chain)
+    assert _named(effect) == "reversal of X\nbacklash(X)"
+    assert _named(SimpleNamespace(name="own", kind="own")) == "own"
 
 
 def test_what_else_it_may_be_is_reported_beside_the_bodies() -> None:
