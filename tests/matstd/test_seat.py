@@ -54,7 +54,7 @@ def test_faults_of_seats_are_what_they_were(unchanged: Unchanged) -> None:
         large = replace(project, blank=replace(project.blank, base=base_of(sides)), overhang=0.0)
         said.append(refusal(with_table(large, diameter_mm=280.0)))
     said += [refusal(cradle_post(height)) for height in (160.0, 170.0, 180.0, 186.0)]
-    unchanged(folded("\n".join(said)).replace(str(EXAMPLES), ""))
+    unchanged(folded("\n".join(said).replace(str(EXAMPLES), "")))
 
 
 def example(**limits: float) -> Brief:
