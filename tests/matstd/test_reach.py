@@ -222,7 +222,7 @@ def test_travels_and_refusals_are_what_they_were(
             found.check()
         except (NotBuildable, NotReachable) as error:
             lines.append(f"{name}: {error}")
-    unchanged(folded("\n".join(lines)).replace(f"{tmp_path}", ""))
+    unchanged(folded("\n".join(lines).replace(f"{tmp_path}", "")))
 
 
 def test_patches_that_do_not_fit_are_reported_with_a_picture(
