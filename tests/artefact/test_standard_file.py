@@ -78,6 +78,8 @@ def text_of(standard, tmp_path):
         ),
         ('serial = ""', 'serial = ""\ncolour = "blue"', "colour: found an unknown key"),
         ("thickness_mm = 30.0", "thickness_mm = -30.0", r"base\.thickness_mm: found -30\.0"),
+        ("modulus_MPa = 200000.0", "modulus_MPa = 1.21e6", r"material\.modulus_MPa: found 1210000"),
+        ("modulus_MPa = 200000.0", "modulus_MPa = 0.99e3", r"material\.modulus_MPa: found 990"),
         ("thickness_mm = 30.0", "thickness_mm = nan", r"base\.thickness_mm: found nan"),
         ("thickness_mm = 30.0", 'thickness_mm = "30"', r"base\.thickness_mm: found '30'"),
         (
