@@ -195,21 +195,25 @@ class Traced:
     def chosen(self, mutant: Mutant) -> list[str]:
         """Tests that execute a wrong line, of short files first, within `MOST_SECONDS`.
 
-        What is executed at import is a constant, whose users count, or the field of a class; what
-        only another process executes is tested by what else executes a line of its file.
+        What is executed at import is a constant or the field of a class, whose users count, not the
+        test that imported it first. What only another process executes is tested by what else
+        executes a line of its file.
         """
         tree = ast.parse((ROOT / mutant.file).read_text(encoding="utf-8"))
-        found = self.executing(mutant.file, statement_lines(tree, mutant.line))
-        if not found:
+        found = set[str]()
+        if in_function(tree, mutant.line):
+            found = self.executing(mutant.file, statement_lines(tree, mutant.line))
+        else:
             for name in assigned(tree, mutant.line):
                 word = re.compile(rf"\b{name}\b")
                 for file in PRODUCTION:
                     text = (ROOT / file).read_text(encoding="utf-8").splitlines()
-                    found |= self.executing(
-                        file, [k for k, t in enumerate(text, 1) if word.search(t)]
-                    )
+                    lines = [k for k, t in enumerate(text, 1) if word.search(t)]
+                    found |= self.executing(file, lines)
         if not found:
             found = self.executing(mutant.file, self.data.lines(str(ROOT / mutant.file)) or [])
+        if not in_function(tree, mutant.line):
+            found.add("tests/test_formats.py")  # of keys, defaults and thresholds
         by_file: dict[str, list[str]] = defaultdict(list)
         for test in sorted(found):
             by_file[test.partition("::")[0]].append(test)
@@ -226,11 +230,9 @@ class Traced:
     def cost(self, file: str, tests: list[str]) -> float:
         """Seconds of some tests of a file; its longest may be the one that makes a fixture."""
         own = {test: s for test, s in self.seconds.items() if test.startswith(f"{file}::")}
-        return (
-            sum(own.values())
-            if file in tests
-            else (sum(own.get(t, 0.0) for t in tests) + max(own.values(), default=0.0))
-        )
+        if file in tests:
+            return sum(own.values())
+        return sum(own.get(t, 0.0) for t in tests) + max(own.values(), default=0.0)
 
 
 def statement_lines(tree: ast.Module, line: int) -> range:
@@ -245,9 +247,18 @@ def statement_lines(tree: ast.Module, line: int) -> range:
     return best
 
 
+def in_function(tree: ast.Module, line: int) -> bool:
+    """Whether a line is executed when a function is called, not at import."""
+    return any(
+        isinstance(node, ast.FunctionDef) and node.body[0].lineno <= line <= (node.end_lineno or 0)
+        for node in ast.walk(tree)
+    )
+
+
 def assigned(tree: ast.Module, line: int) -> list[str]:
-    """Names that the statement of a line gives at the top of a module."""
-    for node in tree.body:
+    """Names that the statement of a line gives at the top of a module or of a class."""
+    classes = [node for node in ast.walk(tree) if isinstance(node, ast.ClassDef)]
+    for node in (node for part in (tree, *classes) for node in part.body):
         if isinstance(node, ast.Assign | ast.AnnAssign) and node.lineno <= line <= node.end_lineno:
             goals = node.targets if isinstance(node, ast.Assign) else [node.target]
             return [n.id for goal in goals for n in ast.walk(goal) if isinstance(n, ast.Name)]

@@ -48,6 +48,6 @@ if __name__ == "__main__":
 
     results = main()
     plate = results.pop("plate")
-    print(*(line for line, _ in program_lines("plate", plate)), sep="\n")
+    print(*program_lines("plate", plate), sep="\n- ")
     print(*(f"{name}: {result_sentence(result)}" for name, result in results.items()), sep="\n")
     save(draw_program(plate), Path(__file__).parent / "pictures" / "ex11.png")

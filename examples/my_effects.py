@@ -9,8 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from matstd.twin.model import Declared, Kind, Parameter, scanned
-from matstd.twin.units import UM
+from matstd.twin.model import Declared, Kind, scanned
 
 
 @dataclass(frozen=True)
@@ -21,8 +20,7 @@ class Hose(Declared):
     width: float = scanned("mm", (15.0, 30.0, 60.0, 120.0))
     y: float = scanned("mm", np.linspace(-100.0, 100.0, 7))
 
-    kind, acts_on = "hose", "EZZ"
-    parameters = (Parameter("lift", "mm", 10 * UM),)
+    kind, acts_on, amplitudes = "hose", "EZZ", ("lift",)
 
     def amounts(self, touches):
         push = np.exp(-(((touches.reading("X") - self.x) / self.width) ** 2))

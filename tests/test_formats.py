@@ -5,6 +5,7 @@ import json
 import re
 import runpy
 import tomllib
+from dataclasses import asdict
 from enum import Enum
 from pathlib import Path
 
@@ -16,6 +17,8 @@ from pydantic_core import PydanticUndefined
 from matstd.artefact.body import read_standard
 from matstd.artefact.brief import read_project, read_task
 from matstd.diagnosis.files import comparison_table, diagnosis_table, read_model
+from matstd.diagnosis.laws import POLICY as LAW_POLICY
+from matstd.diagnosis.policy import POLICY
 from matstd.importers.files.mapping_file import MappingTable
 from matstd.probe_paths.control import read_log
 from matstd.twin.errors import BadFile
@@ -234,6 +237,13 @@ def test_examples_of_results_have_described_keys_alone_and_all_of_them(name):
     assert undescribed(example, name) == []
     shown = set(paths(example))
     assert [key for key in tables()[name] if "<" not in key and key not in shown] == []
+
+
+def test_thresholds_of_the_examples_are_those_in_force():
+    shown = examples()
+    law, found = (json.loads(shown[f"{name}.json"])["policy"] for name in ("law", "diagnosis"))
+    assert law == asdict(LAW_POLICY)
+    assert found.items() <= POLICY.table().items()
 
 
 @pytest.mark.parametrize("name", list(RESULTS))

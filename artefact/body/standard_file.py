@@ -22,6 +22,7 @@ from matstd.twin.units import UM
 FORMAT = "standard/1"
 
 Positive = Annotated[float, Field(gt=0.0)]
+Modulus = Annotated[float, Field(ge=1e3, le=1.2e6)]  # MPa, up to that of diamond
 _LETTERS = "letters, digits and `_`, a letter first, 32 at most"
 Name = Annotated[
     str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_]*$", max_length=32, description=_LETTERS)
@@ -44,7 +45,7 @@ class _Material(Table):
     density_kg_mm3: Positive
     expansion: float = Field(alias="expansion_1_K", ge=0.0, lt=1e-3)
     u_expansion: float | None = Field(default=None, alias="expansion_u_1_K", ge=0.0, lt=1e-3)
-    modulus_MPa: float | None = Field(default=None, ge=1e3, le=1.2e6)  # noqa: N815
+    modulus_MPa: Modulus | None = None  # noqa: N815
     poisson: float = Field(default=0.3, gt=0.0, lt=0.5)
     modulus_source: str = "stated"
     modulus_share: Annotated[float, Field(ge=0.0, le=1.0)] = 0.0
@@ -104,7 +105,7 @@ class _Sag(Table):
     source: str
     down: str = "-Z"
     share: Annotated[float, Field(ge=0.0, le=1.0)] = 0.2
-    modulus_MPa: float | None = Field(default=None, ge=1e3, le=1.2e6)  # noqa: N815
+    modulus_MPa: Modulus | None = None  # noqa: N815
     um: dict[str, Annotated[list[Triple], Field(min_length=3, max_length=3)]]
 
 

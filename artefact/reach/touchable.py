@@ -226,7 +226,7 @@ class ProbeReach:
         """Why one touch is not within angle and travels."""
         cosine = float(self._cosine(one, self._pose_kinematics(one))[0])
         if cosine < np.cos(self.steepest):
-            angle = np.arccos(np.clip(cosine, -1.0, 1.0)) / DEG
+            angle = np.arccos(max(cosine, -1.0)) / DEG
             return f"the surface leans {angle:.1f} degrees from the tool axis"
         for gap in self.gaps:
             q = self.readings(one, gap)

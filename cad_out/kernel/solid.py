@@ -200,11 +200,8 @@ def _flat_cut(side: Side, base: Base) -> Any:
     """Material that is removed from a round side for a flat."""
     far = 2.0 * max(base.half_size)
     low, high = np.array([-far, -far, -1.0]), np.array([far, far, base.thickness])
-    axis = 0 if side.normal[0] else 1
-    if side.normal[axis] > 0:
-        low[axis] = side.offset
-    else:
-        high[axis] = -side.offset
+    outwards = np.array([*side.normal, 0])
+    low[outwards > 0], high[outwards < 0] = side.offset, -side.offset
     return box(low.tolist(), high.tolist())
 
 

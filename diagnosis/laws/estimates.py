@@ -94,12 +94,10 @@ def curve_of(learning: Learning, law: Law, driver: Driver, x: Array) -> tuple[Ar
     pick[way] = 1.0
     wide = (S[:, None, :] * pick[None]).reshape(len(x), -1)
     slope = [wide]
-    inner = law.inner(fit.run.touches)
-    for i in (t.index for t in tangents):
-        step = 0.02 * float(inner[i].grid[-1] - inner[i].grid[-2]) or 1e-9
-        there = np.array(law.places) + step * np.eye(len(law.places))[i] * [[1.0], [-1.0]]
+    for t in tangents:
+        there = np.array(law.places) + t.step * np.eye(len(law.places))[t.index] * [[1.0], [-1.0]]
         up, down = (_values(law, driver, x, tuple(at), held) @ weights[way] for at in there)
-        slope.append(((up - down) / (2.0 * step))[:, None])
+        slope.append(((up - down) / (2.0 * t.step))[:, None])
     A = np.hstack(slope)
     if law.is_curve_alone:
         seen = driver.values(fit.run.touches)[fit.used]

@@ -72,7 +72,7 @@ class TableResults(Displayed):
 
 @text.register
 def _text(found: TableResults) -> str:
-    lines = [next(iter(table_lines(played)))[0] for played in found.done]
+    lines = [next(table_lines(played)) for played in found.done]
     return "\n".join([*lines, *(f"not written: {refusal}" for refusal in found.refused)])
 
 

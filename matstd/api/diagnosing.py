@@ -136,7 +136,8 @@ class Diagnosis(Saveable, answer.Diagnosis):
             write_whole(folder / "model.toml", self.model_text)
             for i, plan in enumerate(self.plans, start=1):
                 write_whole(folder / f"next_measurement_{i}.csv", plan_text(plan))
-            if self.laws is not None and self.visit is not None:
+            if self.visit is not None:
+                assert self.laws is not None  # which a visit is planned for
                 write_learnt(folder, self.laws, self.title, self.visit)
             return write_found_arm(folder, self.fit, self.title)
 

@@ -13,17 +13,17 @@ from matstd.twin.units import MINUTE, NM, UM
 from matstd.twin.words import few
 
 
-def program_lines(name: str, done: Compensated) -> Iterator[tuple[str, bool]]:
-    """Lines on the console, and whether each is the first."""
+def program_lines(name: str, done: Compensated) -> Iterator[str]:
+    """A heading, and lines below it."""
     motions, points = len(done.program.motions), len(done.q)
-    yield f"{name}: {motions} motions as {points} lines", True
+    yield f"{name}: {motions} motions as {points} lines"
     before, after = (rms_length(field[done.is_stated]) / UM for field in (done.before, done.after))
     worst = np.linalg.norm(done.after[done.is_stated], axis=1).max() / UM
     words = f"tool point at line ends {digits(before)} -> {digits(after)} µm rms"
     words += f" (worst {digits(worst)} µm)"
     if done.u.any() and rms_length(done.u[:, None]) > NM:
         words += f"; the uncertainty of the model is {um(rms_length(done.u[:, None]), 2)} there"
-    yield f"- {words}", False
+    yield words
     if done.is_cut:
         row = int(np.nanargmax(done.between))
         words = f"between line ends up to {digits(done.worst_between / UM)} µm off the path"
@@ -31,19 +31,16 @@ def program_lines(name: str, done: Compensated) -> Iterator[tuple[str, bool]]:
         words += f"; lines were divided down to {digits(done.tolerance / UM)} µm"
         if done.worst_between > done.tolerance:
             words += ", except where a reversal or a load changes the correction abruptly"
-        yield f"- {words}", False
+        yield words
     if len(done.leans):
         most = digits(done.leans.max() / UM)
-        yield (
-            f"- {len(done.leans)} holes by cycles, exact at their bottom; lean at most {most} µm",
-            False,
-        )
+        yield f"{len(done.leans)} holes by cycles, exact at their bottom; lean at most {most} µm"
     added = np.abs(done.added[:, done.program.frame.linear]).max() / UM
     minutes = digits(done.elapsed[-1] / MINUTE)
-    yield f"- largest correction {digits(added)} µm; {minutes} min of motion", False
+    yield f"largest correction {digits(added)} µm; {minutes} min of motion"
     if done.unmoved:
         lines = ", ".join(str(line) for line in done.unmoved)
-        yield f"- lines not compensated (machine coordinates, or no position yet): {lines}", False
+        yield f"lines not compensated (machine coordinates, or no position yet): {lines}"
 
 
 _TITLES = {
@@ -112,18 +109,18 @@ def left_out_sentence(axes: tuple[str, ...]) -> str:
     )
 
 
-def table_lines(played: VerifiedTables) -> Iterator[tuple[str, bool]]:
-    """Lines on the console, and whether each is the first of its control."""
-    yield f"{control_title(played.format)}: {result_sentence(played.result)}", True
+def table_lines(played: VerifiedTables) -> Iterator[str]:
+    """The heading of a control, and lines below it."""
+    yield f"{control_title(played.format)}: {result_sentence(played.result)}"
     bound = small(played.interpolation / UM)
-    yield f"- interpolation and rounding leave at most {bound} µm {extent_of(played)}", False
+    yield f"interpolation and rounding leave at most {bound} µm {extent_of(played)}"
     if played.left_out:
-        yield f"- {left_out_sentence(played.left_out)}", False
+        yield left_out_sentence(played.left_out)
     held = [left for left in played.result.left if left.rms > max(played.interpolation, 10 * NM)]
     if held:
         words = few([held_words(left) for left in held], MAX_NAMED_ERRORS)
-        yield f"- cannot represent, rms over the workspace, each by itself: {words}", False
+        yield f"cannot represent, rms over the workspace, each by itself: {words}"
         if grown := grown_sentence(held):
-            yield f"- {grown}", False
+            yield grown
     elif not played.left_out:
-        yield "- represents every error of the model", False
+        yield "represents every error of the model"

@@ -21,8 +21,6 @@ from matstd.report.words import sizes, structure_words
 from matstd.twin.files import write_whole
 from matstd.twin.frames import Array
 
-HEIGHT = 760  # of the frame, pixels
-
 
 class Framed:
     """A live view that a notebook shows; `save` writes it as a page of its own."""
@@ -35,7 +33,7 @@ class Framed:
 
     def _repr_html_(self) -> str:
         """The page in a frame of its own, so that neither disturbs the other."""
-        style = f"width:100%;height:{HEIGHT}px;border:0"
+        style = "width:100%;height:760px;border:0"  # a frame has no height of its own
         return f'<iframe srcdoc="{escape(self.page)}" style="{style}"></iframe>'
 
     def save(self, path: str | Path) -> Path:

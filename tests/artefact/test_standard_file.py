@@ -5,7 +5,15 @@ from dataclasses import fields, replace
 import numpy as np
 import pytest
 
-from matstd.artefact.body import ErrorShare, read_standard, write_standard
+from matstd.artefact.body import (
+    ErrorShare,
+    Known,
+    KnownFeature,
+    Verdict,
+    read_standard,
+    write_standard,
+)
+from matstd.artefact.body.known_file import KnownTable, known_table
 from matstd.artefact.body.sag import Sag
 from matstd.twin.errors import BadFile, DesignError
 
@@ -70,6 +78,8 @@ def text_of(standard, tmp_path):
         ),
         ('serial = ""', 'serial = ""\ncolour = "blue"', "colour: found an unknown key"),
         ("thickness_mm = 30.0", "thickness_mm = -30.0", r"base\.thickness_mm: found -30\.0"),
+        ("modulus_MPa = 200000.0", "modulus_MPa = 1.21e6", r"material\.modulus_MPa: found 1210000"),
+        ("modulus_MPa = 200000.0", "modulus_MPa = 0.99e3", r"material\.modulus_MPa: found 990"),
         ("thickness_mm = 30.0", "thickness_mm = nan", r"base\.thickness_mm: found nan"),
         ("thickness_mm = 30.0", 'thickness_mm = "30"', r"base\.thickness_mm: found '30'"),
         (
@@ -141,6 +151,48 @@ def test_the_uncertainty_of_the_expansion_is_kept(standard, tmp_path):
     (tmp_path / "bad.toml").write_text(text.replace("1.05e-05", "11.5"), encoding="utf-8")
     with pytest.raises(BadFile, match=r"material.expansion_1_K: found 11.5"):
         read_standard(tmp_path / "bad.toml")
+
+
+def test_a_calibration_is_written_to_the_digits_of_its_units():
+    """Tenths of a nanometre, nanoradians: by hand, and read in base units again."""
+    axes = (1.23456e-4, 2.34567e-4, 3.45678e-4)
+    features = {
+        "FF1": KnownFeature(49, 4.56789e-4, 5.67891e-6, 6.78912e-4),
+        "SPH1": KnownFeature(25, 7.89123e-4, 0.0, 0.0, axes),
+    }
+    verdicts = (
+        Verdict("SPH1", "diameter", -1.23456e-3, 2.34567e-3, 1.11116e-4),
+        Verdict("FF1", "profile", 5.43216e-3, 4.32156e-3, 2.22226e-4),
+    )
+    table = known_table(Known("cmm.csv", "0123", features, verdicts, 1.23456e-6))
+    assert table == {
+        "source": "cmm.csv",
+        "nominal": "0123",
+        "scale_u_ppm": 1.2346,
+        "feature": {
+            "FF1": {"points": 49, "u_um": 0.4568, "u_urad": 5.679, "u_form_um": 0.6789},
+            "SPH1": {"points": 25, "u_um": 0.7891, "u_urad": 0.0, "u_form_um": 0.0,
+                     "u_axes_um": [0.1235, 0.2346, 0.3457]},
+        },
+        "verdict": [
+            {"feature": "SPH1", "characteristic": "diameter", "deviation_um": -1.2346,
+             "tolerance_um": 2.3457, "u_um": 0.1111, "verdict": "conforming"},
+            {"feature": "FF1", "characteristic": "profile", "deviation_um": 5.4322,
+             "tolerance_um": 4.3216, "u_um": 0.2222, "verdict": "not conforming, accepted"},
+        ],
+    }  # fmt: skip
+    again = KnownTable.model_validate(table).known()
+    assert again.u_scale == pytest.approx(1.2346e-6)
+    assert again.features["SPH1"].u_axes == pytest.approx((1.235e-4, 2.346e-4, 3.457e-4))
+    found = [f for f in again.features.values()]
+    assert [f.points for f in found] == [49, 25]
+    assert [f.u for f in found] == pytest.approx([4.568e-4, 7.891e-4])
+    assert found[0].u_tilt == pytest.approx(5.679e-6)
+    assert found[0].u_form == pytest.approx(6.789e-4)
+    read = [(v.deviation, v.tolerance, v.u) for v in again.verdicts]
+    np.testing.assert_allclose(
+        read, [(-1.2346e-3, 2.3457e-3, 1.111e-4), (5.4322e-3, 4.3216e-3, 2.222e-4)]
+    )
 
 
 def test_a_sag_of_a_feature_that_there_is_not_is_refused(standard, tmp_path):

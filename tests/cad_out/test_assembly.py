@@ -65,6 +65,24 @@ def test_a_foot_that_is_rounded_keeps_the_distance_that_a_circle_has(upright):
     assert upright.blended == {"FF1", "FF2", "SPH1", "SPH2", "SPH3"}
 
 
+@pytest.mark.parametrize(("room", "is_rounded"), [(0.4, False), (0.7, True)])
+def test_a_foot_is_rounded_where_the_blend_keeps_half_a_millimetre_from_the_rim(
+    upright, room, is_rounded
+):
+    rim = np.array(upright.base.half_size) - BLEND - room
+    patch, ball = upright.patches[1], upright.spheres[2]
+    T = patch.T_artefact_patch.copy()
+    T[1, 3] = rim[1] - patch.half_size[1]
+    moved = replace(patch, T_artefact_patch=T)
+    beside = replace(ball, centre=np.array([rim[0] - ball.foot_radius, *ball.centre[1:]]))
+    made = replace(
+        upright, patches=(upright.patches[0], moved), spheres=(*upright.spheres[:2], beside)
+    )
+    assert ({"FF2", "SPH3"} <= made.blended) == is_rounded
+    assert made.blended >= {"FF1", "SPH1", "SPH2"}
+    assert len(made.blended) == (5 if is_rounded else 3)
+
+
 def test_lettering_stands_clear_of_bodies_holes_and_each_other(upright):
     details = details_of(upright)
     assert details.missing == ()

@@ -19,6 +19,7 @@ from matstd.cad_out.details import (
     notes_of,
     tolerances_of,
 )
+from matstd.cad_out.details.places import Side
 from matstd.cad_out.making import joints_of, stiffness_of
 from matstd.cad_out.making.cutting import cutting_of
 from matstd.cad_out.making.hints import hints_of
@@ -79,6 +80,24 @@ def test_a_rational_spline_is_evaluated_as_the_kernel_does() -> None:
     found = _in_space(curved)(grid_points(u, v))
     assert np.hypot(*found[:, :2].T) == pytest.approx(7.0, abs=1e-12)
     assert np.ptp(found, axis=0) == pytest.approx([7.0, 7.0, 20.0])
+
+
+@pytest.mark.parametrize(
+    ("normal", "offset", "removed"),
+    [((1, 0), 59.0, 85.0), ((-1, 0), 48.0, 170.0), ((0, 1), 42.0, 330.0), ((0, -1), 36.0, 440.0)],
+)
+def test_a_flat_is_what_lies_beyond_its_side(normal, offset, removed) -> None:
+    """Of a block from (-50, -40) to (60, 45), 20 mm high; areas by hand, mm^2."""
+    from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut
+
+    from matstd.cad_out.kernel.faces import volume
+    from matstd.cad_out.kernel.primitives import boolean, box
+    from matstd.cad_out.kernel.solid import _flat_cut
+
+    block = box([-50.0, -40.0, 0.0], [60.0, 45.0, 20.0])
+    tool = _flat_cut(Side(normal, offset, 30.0, 0.5), Base((60.0, 45.0), 45.0, 20.0))
+    left = boolean(BRepAlgoAPI_Cut(), [block], [tool], "a flat")
+    assert volume(block) - volume(left) == pytest.approx(20.0 * removed)
 
 
 @pytest.mark.parametrize(

@@ -13,7 +13,7 @@ from matstd.compensation.service.tabulated import error_tables
 from matstd.twin.errors import DesignError, OutsideTravel
 from matstd.twin.files import read_machine
 from matstd.twin.library import ordinary_model, parse_effect
-from matstd.twin.units import NM, UM
+from matstd.twin.units import DEG, NM, UM
 
 MACHINES = Path(__file__).parents[2] / "examples" / "machines"
 
@@ -85,6 +85,12 @@ def test_what_cannot_be_corrected_is_refused(known, quick, bench_chain):
     q[bench_chain.axis_index("B")] = 1.0
     with pytest.raises(OutsideTravel, match=r"B 57\.2958 degrees, beyond its travel -110 to 30"):
         quick.at(q)
+    for end, beyond in ((-110.0 * DEG, -1.0), (30.0 * DEG, 1.0)):
+        q[bench_chain.axis_index("B")] = end
+        quick.at(q)
+        q[bench_chain.axis_index("B")] = end + 2e-9 * beyond
+        with pytest.raises(OutsideTravel, match="B"):
+            quick.at(q)
     q[bench_chain.axis_index("B")] = float("nan")
     with pytest.raises(OutsideTravel, match="B nan"):
         quick.at(q)

@@ -10,6 +10,7 @@ from rs274 import is_there, moves
 from matstd.compensation.field import MachineErrors, State
 from matstd.compensation.part_programs import Keep
 from matstd.compensation.programs import compensated
+from matstd.compensation.programs.path import ProgramPath
 from matstd.compensation.tables import header_of
 from matstd.twin.errors import BadFile, OutsideTravel
 from matstd.twin.library import parse_effect
@@ -282,6 +283,18 @@ def test_reversal_is_taken_up_on_both_sides(bench_chain, frame, head, tmp_path):
     added = found.added[last, bench_chain.axis_index("X")]
     # the datum was probed between both sides
     np.testing.assert_allclose(added, [-4 * UM, -4 * UM, 4 * UM], atol=10 * NM)
+
+
+def test_a_quarter_of_a_circle_ends_with_the_sign_that_it_has_before_its_end(
+    bench_chain, frame, tmp_path
+):
+    """From (0, 0) to (10, 10) about (10, 0): Y stands at the end, and came from below."""
+    backlash = parse_effect("backlash(X)", bench_chain)
+    errors = MachineErrors.of_errors(bench_chain, [(backlash, np.array([8 * UM]))])
+    text = "G0 X0 Y5 Z0\nG1 Y0 F100\nG2 X10 Y10 I10 J0\nG1 X20\n"
+    path = ProgramPath(part_program(text, frame, tmp_path, "a.ngc"), errors)
+    x, y = (bench_chain.axis_index(axis) for axis in "XY")
+    np.testing.assert_array_equal(path.last[2:, [x, y]], [[0.0, -1.0], [1.0, 1.0]])
 
 
 def test_growth_goes_on_while_the_program_runs(bench_chain, frame, tmp_path, datum):

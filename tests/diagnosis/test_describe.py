@@ -2,9 +2,14 @@
 
 import numpy as np
 import pytest
+from made_up import made_up
 
-from matstd.diagnosis.fit.describe import _bound, size
-from matstd.twin.model import Inner, Parameter
+from matstd.diagnosis.fit import fit_run
+from matstd.diagnosis.fit.describe import _bound, curve_sizes, size
+from matstd.twin.library import parse_effect
+from matstd.twin.model import Inner, Model, Parameter
+from matstd.twin.record import Run
+from matstd.twin.units import UM
 
 DRAWS = 1000
 BINOMIAL = 4.0
@@ -55,3 +60,19 @@ def test_a_value_within_a_thousandth_of_an_end_of_its_scan_lies_at_it(value, end
     assert _bound(Inner("tau", "s", grid[::-1]), value) == end
     for jumps in (Inner("k", "1", grid, False), Inner("t", "s", grid, acts="at an instant")):
         assert _bound(jumps, value) == 0
+
+
+def test_a_curve_is_measured_in_its_own_unit_however_a_surface_shows_it() -> None:
+    """Straightness on faces that lean by every angle: the height of the curve that was planted."""
+    t = made_up("hsm600u", 60)
+    curve = parse_effect("geometric(EYX,2-4)", t.chain)
+    beside = parse_effect("geometric(EZZ,linear)", t.chain)
+    model = Model(t.chain, (curve, beside))
+    theta = np.array([12.0, -7.0, 5.0, 3.0]) * UM
+    fit = fit_run(Run(t, model.deviation(t, theta), np.full(len(t), 1e-3 * UM)), model)
+    (whole, *_) = curve_sizes(fit, curve)
+    assert whole.quantity == "peak_to_valley"
+    assert whole.unit == "um"
+    height = np.ptp(theta[:3] @ np.array([term.amount for term in curve.terms(t)]))
+    # a hundredth of it is what the scale of Z beside it could be as well
+    assert whole.value == pytest.approx(height / UM, rel=0.02)

@@ -1,16 +1,22 @@
 """Readings of a trigger probe are no regressors; noise that nothing shows is not believed."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from flat_plate import HEIGHT, lag, write_plate
+from made_up import run_of
 from marks import slow
 from unchanged import answer_text
 
+from matstd.diagnosis.accuracy import repeatability
 from matstd.diagnosis.answer import Verdict, diagnose
+from matstd.diagnosis.answer.remainder import to_repeat
 from matstd.diagnosis.laws import learn_laws
 from matstd.report.words import verdict_sentence
 from matstd.twin.fields import travelling_axes
 from matstd.twin.files import read_run
+from matstd.twin.library import parse_effect
 from matstd.twin.record import with_commanded
 from matstd.twin.units import UM
 
@@ -58,6 +64,23 @@ def test_noise_that_nothing_shows_is_undecided(tmp_path):
     lines = [str(line) for line in sorted(result.run.line[result.repeat])]
     assert len(lines) == 6
     assert all(line in words for line in lines)
+
+
+def test_no_touch_is_asked_for_again_where_an_effect_is_named():
+    """The noise of a backlash of 40 µm is four times the stated one; poses would be repeated."""
+    x, way = np.linspace(0.0, 400.0, 40), np.where(np.arange(40) % 2, 1.0, -1.0)
+    noise = np.random.default_rng(2).normal(0.0, 4.0 * UM, 40)
+    run = run_of(x, 20.0 * UM * way + noise, u=UM, cycle=np.arange(40) // 8)
+    run = replace(run, touches=replace(run.touches, approach=way[:, None]))
+    found = diagnose(run, candidates=[parse_effect("backlash(X)", run.touches.chain)])
+    assert found.verdict is Verdict.MISSING
+    assert len(found.repeat) == 0
+    off = np.abs(found.fit.residual)
+    worst = [8 * pose + int(np.argmax(off[8 * pose : 8 * pose + 8])) for pose in range(5)]
+    asked = to_repeat(found.fit, repeatability(found.fit))
+    assert set(asked[:5]) == set(worst)  # the largest of each pose, then the next largest
+    assert asked[5] == max(set(range(40)) - set(worst), key=lambda row: off[row])
+    assert np.all(np.diff(off[asked[:5]]) < 0.0)
 
 
 def test_repeats_show_the_noise(tmp_path, unchanged):

@@ -1,6 +1,7 @@
 """The learnt geometry: what was planted in the exact chain comes back with sign, size and name."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -14,7 +15,7 @@ from matstd.diagnosis.geometry import (
     geometry_rows,
     learnt_geometry,
 )
-from matstd.report.geometry.geometry_words import correction_line, noted_lines
+from matstd.report.geometry.geometry_words import _is_usual, correction_line, noted_lines
 from matstd.twin.errors import BadValue
 from matstd.twin.frames import apply, inverse
 from matstd.twin.library import ordinary_model
@@ -335,3 +336,17 @@ def test_linear_axes_copied_first_and_lines_after_them_leave_the_machine_as_it_i
     for row in rows:
         if row.is_determined and row.quantity in (Quantity.ROTARY_LINE, Quantity.SQUARENESS):
             assert abs(row.estimate.value) < 3.0 * row.estimate.u, row.symbol
+
+
+@pytest.mark.parametrize(
+    ("quantity", "symbol", "axes", "is_usual"),
+    [
+        (Quantity.SQUARENESS, "EC0Y", ("X", "Y"), True),
+        (Quantity.SCALE, "EXX", ("X",), True),
+        (Quantity.ROTARY_MOTION, "ECC", ("C",), True),
+        (Quantity.ROTARY_MOTION, "EAC", ("C",), False),
+        (Quantity.STRAIGHTNESS, "EYX", ("X",), False),
+    ],
+)
+def test_positioning_is_the_usual_question_on_a_rotary_axis(quantity, symbol, axes, is_usual):
+    assert _is_usual(SimpleNamespace(quantity=quantity, symbol=symbol, axes=axes)) == is_usual

@@ -13,6 +13,7 @@ from simulator_laws import law_case
 
 from matstd.api.saved import write_learnt
 from matstd.diagnosis.files import visit_text
+from matstd.diagnosis.files.plan_file import visit_table
 from matstd.diagnosis.laws import POLICY, learn_laws
 from matstd.diagnosis.laws.beginning import Beginning
 from matstd.diagnosis.next_visit import (
@@ -286,3 +287,20 @@ def test_a_rival_that_no_visit_distinguishes_asks_for_no_longer_one(warm) -> Non
     plan = planned([*found, *nearly], seen, np.random.default_rng(0))
     assert [one.is_distinguished for one in plan.rivals] == [True, False]
     assert len(plan.touches) <= SIZES[0]
+
+
+def test_a_plan_without_touches_takes_no_time() -> None:
+    table = visit_table(VisitPlan(refusal=NoPlan.DECIDED))
+    assert list(table.values()) == [
+        0,
+        0,
+        0.0,
+        0.0,
+        0.0,
+        None,
+        1.0,
+        None,
+        [],
+        [],
+        NoPlan.DECIDED.value,
+    ]

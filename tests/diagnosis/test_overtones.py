@@ -3,11 +3,14 @@
 Shapes are made by their own formulas (amplitudes from Fourier's series by hand).
 """
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from made_up import run_of
 
 from matstd.diagnosis.answer import Diagnosis, Verdict, diagnose
+from matstd.diagnosis.search.further_parts import _is_fraction
 from matstd.report.words import sizes
 from matstd.twin.errors import UnknownEffect
 from matstd.twin.library import parse_effect
@@ -72,3 +75,20 @@ def test_sines_are_whole_fractions_of_the_period() -> None:
     terms = [t.amount for t in effect.terms(touches)]
     want = [f(2 * np.pi * k * x / 0.7) for k in (1, 2, 3) for f in (np.sin, np.cos)]
     assert np.allclose(terms, want)
+
+
+@pytest.mark.parametrize(
+    ("order", "off", "is_one"),
+    [
+        *((1, 0.45, True), (1, -0.55, False), (3, -0.45, True), (3, 0.55, False)),
+        *((4, 0.0, False), (0, 0.45, False)),
+    ],
+)
+def test_a_wave_is_a_sine_of_a_period_within_half_a_turn_of_the_travel(order, off, is_one) -> None:
+    """Of 0.7 mm with three sines, over 3 mm."""
+    x = np.linspace(2.0, 5.0, 61)
+    space = SimpleNamespace(touches=run_of(x, 0.0 * x).touches, used=np.ones(61, dtype=bool))
+    chain = space.touches.chain
+    wave = parse_effect("periodic(EXX)", chain).tuned(1.0 / (order / 0.7 + off / 3.0))
+    assert _is_fraction(space, wave, parse_effect("periodic(EXX,3)", chain).tuned(0.7)) == is_one
+    assert not _is_fraction(space, parse_effect("backlash(X)", chain), wave)

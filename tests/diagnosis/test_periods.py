@@ -11,12 +11,12 @@ from made_up import run_of
 from unchanged import answer_text
 
 from matstd.diagnosis.answer import Verdict, diagnose
-from matstd.diagnosis.answer.alike import even_step
+from matstd.diagnosis.answer.alike import _fraction, even_step
 from matstd.diagnosis.fit import Role
 from matstd.report.words import scanned_sentence
 from matstd.twin.effects.periodic import scanned_periods
 from matstd.twin.frames import Array
-from matstd.twin.model import is_tunable
+from matstd.twin.model import Inner, is_tunable
 from matstd.twin.record import Run
 from matstd.twin.units import UM
 
@@ -243,6 +243,19 @@ def test_a_stated_pitch_is_scanned_beyond_what_readings_resolve() -> None:
 def test_even_step_by_hand() -> None:
     assert even_step(np.array([3.0, 9.0, 15.0, 27.0])) == pytest.approx(6.0)
     assert even_step(np.array([3.0, 9.0, 17.0, 27.0])) is None
+    assert even_step(np.array([0.3, 0.1, 0.6, 0.2, 0.4])) == pytest.approx(0.1)
+    assert even_step(np.array([0.3, 0.3])) is None
+
+
+@pytest.mark.parametrize(
+    ("period", "whole"),
+    [(24.0, 1), (3.0, 8), (24.0 / 9.0, np.inf), (12.1, 2), (13.0, np.inf), (60.0, np.inf)],
+)
+def test_fractions_of_a_pitch_by_hand(period, whole) -> None:
+    """Of 24 mm, up to the eighth, where frequencies were scanned 1/400 mm apart."""
+    scanned = Inner("period", "mm", 1.0 / np.arange(0.01, 0.5, 0.0025), acts="with a period")
+    assert _fraction(period, 24.0, scanned) == whole
+    assert _fraction(period, None, scanned) == np.inf
 
 
 def test_a_stated_pitch_is_named_though_hundreds_of_periods_explain_few_targets(unchanged) -> None:

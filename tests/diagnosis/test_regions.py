@@ -1,6 +1,7 @@
 """Regions where a model fails: the box that was planted, its mean, and none in noise."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,6 +14,8 @@ from simulator_laws import local_law
 from matstd.diagnosis.files.diagnosis_file import conditions_text
 from matstd.diagnosis.fit import fit_run
 from matstd.diagnosis.residual import Condition, Side, observed_error, regions
+from matstd.diagnosis.residual.boxes import Bounded
+from matstd.diagnosis.residual.failing_regions import _Constant
 from matstd.importers import one_axis_machine, positioning_run
 from matstd.importers.instruments import PositioningTest
 from matstd.report.words.diagnosis_words import region_words
@@ -163,3 +166,31 @@ def test_conditions_in_files_and_in_words() -> None:
     on = (Condition("feature", Side.IS, "pad4"), Condition("X_mm", Side.BELOW, -12.5))
     assert conditions_text(on) == "feature = pad4 and X_mm < -12.5"
     assert region_words(on) == "on pad4 and X < -12.5 mm"
+
+
+@pytest.mark.parametrize("has_memory", [False, True])
+def test_sums_over_bins_are_those_of_the_column_in_each_region(has_memory) -> None:
+    """By one region after the other: its column over the noise, beside the model, along what is."""
+    rng, n = np.random.default_rng(3), 37
+    used = np.arange(40) % 16 != 5
+    u, mixed = rng.uniform(0.5, 2.0, n), np.tril(rng.normal(size=(n, n)))
+
+    def white(columns):
+        return mixed @ columns[used] if has_memory else columns[used] / u[:, None]
+
+    space = SimpleNamespace(
+        used=used,
+        u=u,
+        whitener=white if has_memory else None,
+        Q=np.linalg.qr(rng.normal(size=(n + 2, 4)))[0],
+        residual=rng.normal(size=n + 2),
+    )
+    column, rows = rng.normal(size=40), rng.random(40) < 0.8
+    variable = Bounded("X_mm", rng.integers(0, 5, 40), (1.0, 2.0, 3.0, 4.0))
+    found = _Constant(space, column, None)._sums(rows, variable)
+    for i, k in zip(*np.triu_indices(5), strict=True):
+        inside = rows & variable.inside(i, k)
+        c = white((column * inside)[:, None])[:, 0]
+        beside = space.Q[:n].T @ c
+        expected = [(inside & used).sum(), c @ c - beside @ beside, c @ c, c @ space.residual[:n]]
+        np.testing.assert_allclose([sums[i, k] for sums in found], expected, atol=1e-9)

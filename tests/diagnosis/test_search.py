@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from made_up import arm_poses
+from scipy.stats import f
 
 from matstd.diagnosis.answer.ambiguity import confusion_class, plausibility
 from matstd.diagnosis.evidence import (
@@ -118,6 +119,11 @@ def test_the_evidence_of_a_set_is_that_of_its_columns(planted) -> None:
     for variant in search.ranking(one):
         whole = search.evaluate((*one.members, search.member(one, variant)))
         assert scores.evidence[variant] == pytest.approx(whole.effects.evidence, abs=1e-6)
+    seen = scores.freedom > 0
+    drop, k = scores.free_drop[seen], scores.freedom[seen]
+    dof = one.effects.dof - k
+    ratio = (drop / k) / ((one.effects.objective - drop) / dof)
+    np.testing.assert_allclose(scores.p[seen], f.sf(ratio, k, dof), rtol=1e-6)
 
 
 def test_refinement_leaves_the_grid_for_the_true_time_constant(planted) -> None:

@@ -4,13 +4,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from made_up import made_up
 
 from matstd.diagnosis.evidence import EffectSet, ResidualSpace
 from matstd.diagnosis.fit import fit_run
 from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.residual import PatternTests, Shape, find_structure
-from matstd.twin.library import ordinary_model
-from matstd.twin.model import Model
+from matstd.diagnosis.residual.partial_residuals import _split
+from matstd.twin.library import kinds, ordinary_model, proposals
+from matstd.twin.model import Model, columns, is_tunable
 from matstd.twin.units import UM
 
 KEY = (1, "hmc1995")
@@ -85,3 +87,17 @@ def test_noise_that_remembers_is_seen_by_its_neighbours(structure_of, noise) -> 
     (in_time,) = [s for s in found if s.shape is Shape.NEIGHBOURS and s.variables == ("time_s",)]
     assert in_time.p_value < POLICY.false_alarm
     assert in_time.columns is None
+
+
+def test_a_quantity_times_what_a_unit_of_it_moves_is_the_deviation() -> None:
+    """Whatever a picture of an effect shows: of every kind one."""
+    t, rng = made_up("hsm600u", 60), np.random.default_rng(1)
+    for effect in [e for kind in kinds() for e in proposals(t, [kind.word])[:1]]:
+        if is_tunable(effect):
+            effect = effect.tuned(*(one.grid[len(one.grid) // 2] for one in effect.inner(t)))
+        theta = rng.normal(size=len(effect.parameters)) * [p.sd for p in effect.parameters]
+        _, quantity, per_unit = _split(effect, t, theta)
+        moved = columns([effect], t) @ theta
+        np.testing.assert_allclose(
+            quantity * per_unit, moved, rtol=1e-9, atol=1e-9 * UM, err_msg=effect.name
+        )

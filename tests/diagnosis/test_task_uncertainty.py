@@ -1,9 +1,12 @@
 """The budget of a measuring task: by hand, and by what it covers of new places on new machines."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from scipy.stats import norm
 
+from matstd.diagnosis.files.uncertainty_file import uncertainty_table
 from matstd.diagnosis.task import Visits, guarded, task_uncertainty
 
 
@@ -105,3 +108,30 @@ def test_guard_bands() -> None:
     assert guarded(2.0, 1.0, 1e6).accepted < 0.0
     assert guarded(2.0, 1.0, 1e6).share == 0.0
     assert guarded(20.0, 1.0, 1e6, bias=-2.0).guard == pytest.approx(3.6449, abs=1e-3)
+
+
+def test_a_budget_is_written_in_the_units_of_its_keys():
+    """Every number another one, and as it is rounded by hand."""
+    lengths = ("bias", "u_cal", "u_p", "u_b", "u_w", "spread", "expected", "u", "U")
+    known = {name: (1.23456 + k) * 1e-3 for k, name in enumerate(lengths)}
+    faces = (("FF1", -0.45678e-3, 0.56789e-3),)
+    one = SimpleNamespace(
+        **known, U_uncorrected=20.12341e-3, visits=3, places=4, faces=5, poses=6,
+        dof=7.89, k=2.36789, by_face=faces,
+    )  # fmt: skip
+    table = uncertainty_table("bore", {"none": one}, 0.06123456)
+    assert (table["task"], table["level"], table["tolerance_um"]) == ("bore", 0.95, 61.2346)
+    (found,) = table["budgets"]
+    g = 1.8633 * 8.23456  # Student's t of 7.89 degrees of freedom at 95 %, times u
+    assert found.pop("conforms_within_um") == pytest.approx(30.61728 - g, rel=1e-3)
+    assert found.pop("does_not_conform_beyond_um") == pytest.approx(30.61728 + g, rel=1e-3)
+    assert found == {
+        "model": "none", "visits": 3, "places": 4, "faces": 5, "poses": 6,
+        "b_um": 1.2346, "u_cal_um": 2.2346, "u_p_um": 3.2346, "u_b_um": 4.2346, "u_w_um": 5.2346,
+        "spread_um": 6.2346, "spread_by_calibration_um": 7.2346, "u_um": 8.2346,
+        "degrees_of_freedom": 7.9, "k": 2.368, "U_um": 9.2346, "U_uncorrected_um": 20.1234,
+        "by_face": [{"feature": "FF1", "mean_um": -0.4568, "spread_um": 0.5679}],
+    }  # fmt: skip
+    (wide,) = uncertainty_table("bore", {"none": one}, 0.02)["budgets"]
+    assert wide["conforms_within_um"] is None
+    assert "conforms_within_um" not in uncertainty_table("bore", {"none": one})["budgets"][0]

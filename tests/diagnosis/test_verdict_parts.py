@@ -16,14 +16,14 @@ from matstd.diagnosis.accuracy import (
     repeatability,
 )
 from matstd.diagnosis.answer import Doubt, Step, Verdict, diagnose
-from matstd.diagnosis.answer.parts import verdict_parts
+from matstd.diagnosis.answer.parts import Remainder, verdict_parts
 from matstd.diagnosis.fit import Reported, Role, fit_run
 from matstd.diagnosis.geometry import LearntGeometry
 from matstd.diagnosis.residual import Shape, Structure
 from matstd.report.numbers import odds_words
 from matstd.report.run_view import diagnosis_step
 from matstd.report.verdict import part_lines
-from matstd.report.verdict.part_words import _odds
+from matstd.report.verdict.part_words import _odds, _remains
 from matstd.report.words import verdict_sentence
 from matstd.twin.frames import apply
 from matstd.twin.library import ordinary_model, parse_effect
@@ -197,6 +197,24 @@ def test_odds_in_words():
 )
 def test_a_rival_that_explains_the_run_better_is_distinguished(odds, words):
     assert _odds(odds) == words
+
+
+@pytest.mark.parametrize(
+    ("shape", "words"),
+    [
+        (Shape.SMOOTH, "it varies with X, along z (also time)"),
+        (Shape.DRIVER, "it drifts slowly as a lag would after a temperature that was not recorded"),
+        (Shape.NEIGHBOURS, "touches that are neighbours in X agree (also time)"),
+    ],
+)
+def test_what_remains_is_a_clause_on_its_first_pattern(shape, words):
+    first, other = (
+        Structure(one, (variable,), "z", 1e-6, 0.2, 9.0, None, law="a lag")
+        for one, variable in ((shape, "X_mm"), (Shape.SMOOTH, "time_s"))
+    )
+    left = Remainder(3.0 * UM, 2.0 * UM, 0.25, 1e-9, (first, other), is_real=True)
+    said = _remains(left, SimpleNamespace(known=None))
+    assert said.startswith(f"2.00 µm rms in its strongest pattern, 25 % of the excess; {words}")
 
 
 def test_a_law_of_a_sensor_is_weighed_against_an_unrecorded_drift(hidden, unchanged):

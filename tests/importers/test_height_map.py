@@ -44,6 +44,11 @@ def test_every_mesh_of_klipper_is_a_set_up_of_its_own(tmp_path) -> None:
     assert list(points.setup) == ["cold"] * 6 + ["hot"] * 4
     np.testing.assert_allclose(points.nominal[4], [30.0, 90.0, 0.0])
     np.testing.assert_allclose(points.deviation[[4, 9], 2], [-1.5, -1.3])
+    count, bare = "#*# x_count = 3\n", KLIPPER.replace("#*# version = 1\n", "")
+    first = bare.replace(count, "").replace("cold]\n", f"cold]\n{count}")
+    (tmp_path / "other.cfg").write_text(first)  # keys may stand in any order
+    other = read_points(read_sheet(tmp_path / "other.cfg"))
+    np.testing.assert_array_equal(other.nominal, points.nominal)
 
 
 @pytest.mark.parametrize(

@@ -4,9 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from made_up import machine
 
 from matstd.information.identifiability import supported_degrees
-from matstd.information.identifiability.degrees import MAX_DEGREE, MAX_POSTERIOR_SHARE
+from matstd.information.identifiability.degrees import MAX_DEGREE, MAX_POSTERIOR_SHARE, Degree
 from matstd.report.identifiability.identifiability_words import degree_words
 from matstd.sensitivity.population import Population
 from matstd.twin.machine import Axis, Family, make_chain
@@ -91,3 +92,18 @@ def test_what_no_touch_moves_has_no_degree(model):
         assert degrees[symbol].largest == 0
     assert degree_words(degrees["ECZ"], model.chain) == "roll of Z (ECZ): no degree"
     assert degrees["EXX"].largest > 0
+
+
+@pytest.mark.parametrize(
+    ("symbol", "supported", "u", "words"),
+    [
+        ("EYX", (2, 3, 4, 5), 0.4 * UM, ": degrees 2 to 5, the last to 0.4 µm"),
+        ("EYX", (3,), 0.12 * UM, ": degree 3 to 0.12 µm"),
+        ("EXC", (1, 2), 7.0 * UM, ": harmonics 1 to 2, the last to 7 µm"),
+        ("EXC", (4,), 7.0 * UM, ": harmonic 4 to 7 µm"),
+    ],
+)
+def test_degrees_of_a_linear_axis_are_harmonics_of_a_rotary_one(symbol, supported, u, words):
+    chain = machine("hsm600u")
+    said = degree_words(Degree(symbol, supported, supported[-1], u, "mm"), chain)
+    assert said.endswith(f"({symbol}){words}")

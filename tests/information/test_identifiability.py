@@ -12,6 +12,7 @@ from matstd.information.identifiability import (
 )
 from matstd.information.identifiability.freedoms import Reason
 from matstd.information.identifiability.nullspace import sparse
+from matstd.information.identifiability.separation import Group, _groups
 from matstd.report.identifiability import family_words, freedom_words
 from matstd.sensitivity.first_order import Workspace, latin_hypercube
 from matstd.sensitivity.population import Population
@@ -203,3 +204,9 @@ def test_combinations_have_the_textbooks_uncertainty():
         assert c.u == pytest.approx(np.sqrt(c.weights @ covariance @ c.weights), rel=1e-9)
         prior = np.sqrt(np.sum((c.weights * sd) ** 2))
         assert c.gain == pytest.approx(prior / c.u, rel=1e-9)
+
+
+def test_confounded_groups_are_named_the_largest_first() -> None:
+    """a - b is invisible, c + d - 2 e is, and f by itself: by hand."""
+    null = np.array([[1, -1, 0, 0, 0, 0], [0, 0, 1, 1, -2, 0], [0, 0, 0, 0, 0, 1]], dtype=float)
+    assert _groups(null, "abcdef") == (Group(("c", "d", "e"), 2), Group(("a", "b"), 1))

@@ -3,6 +3,7 @@
 import re
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -221,7 +222,7 @@ def test_travels_and_refusals_are_what_they_were(
             found.check()
         except (NotBuildable, NotReachable) as error:
             lines.append(f"{name}: {error}")
-    unchanged(folded("\n".join(lines)).replace(f"{tmp_path}", ""))
+    unchanged(folded("\n".join(lines).replace(f"{tmp_path}", "")))
 
 
 def test_patches_that_do_not_fit_are_reported_with_a_picture(
@@ -263,6 +264,41 @@ def test_what_would_do_does(tmp_path, monkeypatch, name, limits, expected, wish)
     met = replace(project.blank.limits, **{key: float(words.split(" = ")[1]) * unit})
     other = replace(project, blank=replace(project.blank, limits=met))
     check_room(feasible.room_of(other, poses))
+
+
+@pytest.mark.parametrize(
+    ("wish", "facts", "values"),
+    [
+        (feasible._fewer_patches, {"faces": [1, 2, 3, 4]}, [4, 3]),
+        (feasible._fewer_patches, {"faces": [1, 2, 3]}, [3]),
+        (feasible._fewer_patches, {"faces": [1, 2, 3], "is_enough": True}, []),
+        (feasible._smaller_gaps, {}, [8.0, 3.0]),
+        (feasible._smaller_gaps, {"is_enough": True}, []),
+        (feasible._steeper_faces, {"is_hidden": True}, [35.5, 45.5]),
+        (feasible._steeper_faces, {}, []),
+        (feasible._resized_blanks, {"is_light": True}, [[242, 209], [275, 238]]),
+        (feasible._resized_blanks, {}, [[209, 180], [198, 171], [187, 162]]),
+        (feasible._resized_blanks, {"is_hidden": True}, []),
+    ],
+)
+def test_what_is_tried_is_each_share_of_what_is_stated(wish, facts, values) -> None:
+    """Of a gap of 17 mm, 30.5 degrees, sides of 220 and 190 mm on a disc of 320 mm: by hand."""
+    brief = read_project(MACHINES / "vertical.toml")
+    limits = replace(brief.blank.limits, gap=17.0, max_slope=30.5 * DEG)
+    base = replace(brief.blank.base, half_size=(110.0, 95.0))
+    brief = replace(brief, blank=replace(brief.blank, limits=limits, base=base))
+    flags = dict.fromkeys(("is_enough", "is_hidden", "is_light"), False)
+    room = SimpleNamespace(**({"faces": [], "blank": brief.blank} | flags | facts))
+    for (words, other), value in zip(wish(brief, room), values, strict=True):
+        assert words.endswith(f" = {value:g}" if isinstance(value, float) else f" = {value}")
+        limits, half = other.blank.limits, other.blank.base.half_size
+        made = {
+            "standard.patches": other.options.patches,
+            "limits.gap_mm": limits.gap,
+            "limits.max_slope_deg": limits.max_slope / DEG,
+            "blank.base_mm": [2.0 * side for side in half],
+        }
+        assert made[words.partition(" = ")[0]] == pytest.approx(value)
 
 
 def test_a_pose_is_charged_with_the_way_beyond_it(tmp_path: Path) -> None:

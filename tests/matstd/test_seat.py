@@ -54,7 +54,7 @@ def test_faults_of_seats_are_what_they_were(unchanged: Unchanged) -> None:
         large = replace(project, blank=replace(project.blank, base=base_of(sides)), overhang=0.0)
         said.append(refusal(with_table(large, diameter_mm=280.0)))
     said += [refusal(cradle_post(height)) for height in (160.0, 170.0, 180.0, 186.0)]
-    unchanged(folded("\n".join(said)).replace(str(EXAMPLES), ""))
+    unchanged(folded("\n".join(said).replace(str(EXAMPLES), "")))
 
 
 def example(**limits: float) -> Brief:
@@ -256,6 +256,10 @@ def test_what_carries_a_standard_above_the_table() -> None:
     high = replace(example(), setups=(setup_at(0.0, 0.0, 30.0),))
     riser = {"name": "RISER", "diameter_mm": 200.0, "height_mm": 30.0}
     assert not refusal(with_bodies(high, riser))
+    for x, is_carried in ((149.3, True), (150.3, False)):  # the base ends at 140 mm
+        block = {"name": "BLOCK", "sides_mm": [20.0, 20.0], "height_mm": 30.0}
+        beside = refusal(with_bodies(high, block | {"at_mm": [x, 0.0, 0.0]}))
+        assert ("floats 30.0 mm" not in beside) == is_carried
     assert "floats 30.0 mm" in refusal(with_bodies(high, riser | {"at_mm": [400.0, 0.0, 0.0]}))
     assert not refusal(replace(high, riser=30.0))
 

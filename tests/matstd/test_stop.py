@@ -3,11 +3,13 @@
 import signal
 import subprocess
 import sys
+import threading
 import time
 from pathlib import Path
 
 import pytest
 
+from matstd import stop
 from matstd.stop import EXIT_STOPPED
 
 BEGIN = """
@@ -56,4 +58,19 @@ def test_it_ends_and_tidies_up(tmp_path: Path, work: str, number: int) -> None:
         process.kill()
     assert process.returncode == EXIT_STOPPED
     assert b"stopped" in message
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_what_is_gone_already_does_not_keep_the_rest(tmp_path: Path, monkeypatch) -> None:
+    """Another thread has removed the first folder and the first file."""
+    folders, files = ([tmp_path / f"{word}{k}" for k in range(2)] for word in ("folder", "file"))
+    folders[1].mkdir()
+    (folders[1] / "half.txt").write_text("half")
+    files[1].write_text("half")
+    begun = {"WORKING": folders, "UNFINISHED": files}
+    monkeypatch.setattr(stop, "_begun", lambda _, name: begun[name])
+    monkeypatch.setattr(stop, "_LAST_WORDS", threading.Lock())
+    monkeypatch.setattr("os._exit", sys.exit)
+    with pytest.raises(SystemExit, match=str(EXIT_STOPPED)):
+        stop.leave()
     assert list(tmp_path.iterdir()) == []

@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 from made_up import made_up
 
+from matstd.commands.measured.diagnose import _row
+from matstd.diagnosis.fit import Reported, Role
 from matstd.report.effects import (
     class_words,
     effect_cell,
@@ -15,7 +17,9 @@ from matstd.report.effects import (
     words_of_name,
 )
 from matstd.report.identifiability.identification_file import identification_table
+from matstd.report.plots.effect_pictures import _named
 from matstd.twin.library import parse_effect
+from matstd.twin.units import UM
 
 LAGS = ["thermal-lag(EZZ)", "thermal-lag(EZY)", "thermal-lag(EZX)", "thermal-lag(EZB)"]
 
@@ -41,6 +45,12 @@ def test_a_class_that_differs_in_its_body_alone_is_reported_as_one() -> None:
         "thermal-lag(EZZ) cannot be distinguished from thermal-lag(EZY), thermal-lag(EZX) and "
         "thermal-lag(EZB)"
     )
+
+
+def test_a_bar_has_its_title_above_its_name_and_a_name_alone_once() -> None:
+    effect = parse_effect("backlash(X)", made_up("hsm600u").chain)
+    assert _named(effect) == "reversal of X\nbacklash(X)"
+    assert _named(SimpleNamespace(name="own", kind="own")) == "own"
 
 
 def test_what_else_it_may_be_is_reported_beside_the_bodies() -> None:
@@ -131,3 +141,22 @@ def test_an_identification_has_the_units_of_its_names():
     assert [d["u"] for d in table["determined"]] == pytest.approx([1.0, 0.5])
     assert (table["touches"], table["gross_errors"]) == (2, [5])
     assert (table["rms_um"], table["test_rms_um"]) == pytest.approx((2.0, 3.0))
+
+
+def test_a_step_of_the_console_has_two_numbers_of_its_effect_and_three_of_its_fit() -> None:
+    fit = SimpleNamespace(
+        rms=1.23456e-3, test_rms=2.34567e-3, noise=SimpleNamespace(chi2_ratio=3.4567)
+    )
+    numbers = ("1.235", "2.346", "3.46")
+    begin = SimpleNamespace(effect=None, fit=fit, reported=(), name="", p_value=1.0)
+    assert _row(begin, is_withdrawn=False) == ("starting model", "", "", *numbers)
+    sizes = {"amplitude": 5.0, "play": 7.0, "slip": 9.0}
+    reported = [Reported(name, "um", v, 0.1, UM, Role.SIZE) for name, v in sizes.items()]
+    one = step("backlash(X)")
+    found = SimpleNamespace(
+        **vars(one), fit=fit, reported=reported, name="backlash(X)", p_value=3.21e-7
+    )
+    name, both, *rest = _row(found, is_withdrawn=True)
+    assert name == "withdrawn:\nreversal of X\n\\[backlash(X)]"  # a bracket is no style
+    assert both == "5.00 ± 0.10 µm, play 7.00 ± 0.10 µm"
+    assert rest == ["3e-07", *numbers]

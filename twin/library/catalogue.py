@@ -173,7 +173,7 @@ def _unknown(text: str, chain: Chain) -> UnknownEffect:
 
 def _is_taken(kind: Kind, chain: Chain, symbol: str) -> bool:
     """Whether a kind acts on an error parameter of the machine."""
-    if symbol not in {s.name for s in chain.symbols} or not kind.arguments.startswith("symbol"):
+    if not kind.arguments.startswith("symbol"):
         return False
     try:
         kind.make(chain, [symbol])

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from matstd.commands.compensation.options import MODEL, PROGRAM, STATE
-from matstd.console import say
+from matstd.console import say, say_each
 from matstd.options import Options
 from matstd.twin.errors import DesignError
 from matstd.twin.units import UM
@@ -60,8 +60,9 @@ def _program(args: argparse.Namespace, machine: Compensation) -> int:
     done = machine.program(
         args.program, output, tolerance=tolerance, options=options, force=args.force
     )
-    for line, is_first in program_lines(output.name, done):
-        say(line, style="bold" if is_first else None)
+    heading, *below = program_lines(output.name, done)
+    say(heading, style="bold")
+    say_each(below)
     names = ", ".join(path.name for path in beside_program(output))
     say(f"{output}: look at {names} beside it")
     return 0
@@ -77,8 +78,9 @@ def _tables(args: argparse.Namespace, machine: Compensation) -> int:
             args.tables, args.control, opposite=args.opposite, force=args.force, progress=show
         )
     for played in found.done:
-        for line, is_first in table_lines(played):
-            say(line, style="bold" if is_first else None)
+        heading, *below = table_lines(played)
+        say(heading, style="bold")
+        say_each(below)
     for refusal in found.refused:
         say(f"not written: {refusal}", style="bold")
     say(f"{args.tables}: look at report.html, compensation.json")
