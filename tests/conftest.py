@@ -69,7 +69,11 @@ TOGETHER = (
         "tests/diagnosis/test_reduced.py",
         "tests/test_formats.py",
     ),
-    ("tests/diagnosis/test_laws.py", "tests/report/test_live_laws.py"),  # `stylus`
+    (  # `stylus`
+        "tests/diagnosis/test_laws.py",
+        "tests/diagnosis/test_said_of_laws.py",
+        "tests/report/test_live_laws.py",
+    ),
     ("tests/test_door.py", "tests/matstd/test_whole_commands.py"),  # `workshop`
 )
 """Folders and files that one worker has, because they share what takes seconds to make."""
