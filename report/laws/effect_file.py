@@ -1,8 +1,10 @@
 """`effect.py`: a law as an effect of the user's own, in thirty lines to be renamed and refined."""
 
+import itertools
 import keyword
 import math
 import re
+import unicodedata
 from collections.abc import Sequence
 
 import numpy as np
@@ -63,7 +65,7 @@ def effect_text(learning: Learning, run: str) -> str:
         _class(learning, one.law, name, run) for one, name in zip(learning.laws, names, strict=True)
     )
     used = [
-        ("matstd.twin.laws", ("SHAPES", "carrier_of", "driver_of", "play"), r"\b{}[([]"),
+        ("matstd.twin.laws", ("carrier_of", "driver_of", "play"), r"\b{}[([]"),
         ("matstd.twin.model", ("Declared", "Kind", "Parameter", "scanned"), r"\b{}\b"),
         ("matstd.twin.units", ("UM", "URAD"), r" {}\b"),
     ]
@@ -171,24 +173,21 @@ def _parameter(one: Estimate) -> str:
 
 def _body(learning: Learning, law: Law, estimates: Sequence[Estimate], is_entry: bool) -> str:
     """Lines of the method: the variables, the shapes, and what they move."""
-    names = {driver: _identifier(driver.name) for driver in law.drivers}
+    shape_names, letters, names = _names(law)
     lines = [f"{names[driver]} = {_variable(driver.name)}" for driver in law.drivers]
     if law.is_surface:
-        lines += _series(learning, law, list(names.values()))
+        lines += _series(learning, law, [names[driver] for driver in law.drivers])
         return "\n".join(f"        {line}" for line in lines)
     shapes = _shapes(learning, law, estimates, names)
     if len(shapes) == 1:
         products = _tuple(shapes[0], 8)
     else:
-        one, other = (_identifier(f.shape.word) for f in law.factors)
-        other = f"{other}_2" if one == other else other
-        for name, code in zip((one, other), shapes, strict=True):
+        each = list(zip(shape_names, letters, shapes, strict=True))
+        for name, _, code in each:
             lines.append(f"{name} = {code[0] if len(code) == 1 else _tuple(code, 8)}")
-        several = [(n, n[0]) for n, code in zip((one, other), shapes, strict=True) if len(code) > 1]
-        loops = " ".join(f"for {letter} in {name}" for name, letter in several)
-        parts = dict(several)
-        product = f"{parts.get(one, one)} * {parts.get(other, other)}"
-        products = f"tuple({product} {loops})" if several else f"({product},)"
+        loops = " ".join(f"for {letter} in {name}" for name, letter, code in each if len(code) > 1)
+        product = " * ".join(letter if len(code) > 1 else name for name, letter, code in each)
+        products = f"tuple({product} {loops})" if loops else f"({product},)"
     if not is_entry:
         lines.append(f'carrier = carrier_of("{law.carrier.name}", touches.chain)')
         products = f"carrier.terms(touches, {products})"
@@ -227,10 +226,43 @@ def _with(code: str, x: str) -> str:
     return re.sub(r"(?<![\w{.])x(?![\w}])", x, code)
 
 
-def _identifier(name: str) -> str:
-    """A name for Python: `y` of Y, `spindle` of T-spindle, `bump_after` of bump-after."""
-    word = name.removeprefix("T-").removeprefix("V-").replace("-", "_").lower()
-    return f"{word}_" if keyword.iskeyword(word) or word in ("np", "self", "touches") else word
+_TAKEN = (
+    *("self", "touches", "np", "tuple", "play", "carrier", "carrier_of", "driver_of"),
+    *("shares", "inside", "one", "other", "beyond", "kept"),
+)
+"""Names that the method of a law uses beside those of its variables and shapes."""
+
+
+def _names(law: Law) -> tuple[list[str], list[str], dict[Driver, str]]:
+    """Names of the shapes, letters for their coefficients, and names of the variables.
+
+    All are valid in Python and distinct: `y` of Y, `last_x` of last-X, `spindle` of T-spindle.
+    A sensor whose short name is taken or invalid keeps its letter: `t_x`, `v_2nd_tank_bar`.
+    """
+    taken = set(_TAKEN)
+
+    def distinct(*wanted: str) -> str:
+        words = [_word(name) for name in wanted]
+        numbered = (f"{words[-1]}_{k}" for k in itertools.count(2))
+        name = next(w for w in itertools.chain(words, numbered) if w not in taken and _is_name(w))
+        taken.add(name)
+        return name
+
+    shapes = [distinct(factor.shape.word) for factor in law.factors]
+    letters = [distinct(factor.shape.word[0]) for factor in law.factors]
+    readings = sorted(law.drivers, key=lambda driver: driver.name[:2] in ("T-", "V-"))
+    short = {driver: driver.name.removeprefix("T-").removeprefix("V-") for driver in readings}
+    return shapes, letters, {d: distinct(name, d.name) for d, name in short.items()}
+
+
+def _word(name: str) -> str:
+    """A name with `_` for what cannot stand in a name of Python, which knows it in form NFKC."""
+    text = unicodedata.normalize("NFKC", name.lower())
+    return "".join(c if f"a{c}".isidentifier() else "_" for c in text)
+
+
+def _is_name(word: str) -> bool:
+    return word.isidentifier() and not keyword.iskeyword(word)
 
 
 def _variable(name: str) -> str:

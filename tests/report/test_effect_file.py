@@ -1,5 +1,7 @@
 """`effect.py` of a law: what the file computes is what the law computes, whatever its form."""
 
+import ast
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -74,6 +76,64 @@ def test_the_file_computes_what_the_law_computes(name, at, measured, unchanged) 
     found, expected = columns([effect], run.touches), columns([law], run.touches)
     assert found.shape == expected.shape
     np.testing.assert_allclose(found, expected, rtol=1e-3, atol=1e-3 * np.abs(expected).max())
+
+
+@pytest.mark.parametrize(
+    ("name", "written"),
+    [
+        ("law(EXX,lin T-X,quad X)", ("t_x", "x", "lin", "quad")),
+        ("law(EXX,lin T-X)", ("x",)),
+        ("law(EXX,lin T-lin,quad X)", ("t_lin", "x", "lin", "quad")),
+        ("law(EXX,lin T-1)", ("t_1",)),
+        ("law(EXX,lin V-2nd_tank_bar)", ("v_2nd_tank_bar",)),
+        ("law(EXX,lin T-class)", ("t_class",)),
+        ("law(EXX,bump T-np)", ("t_np",)),
+        ("law(EXX,hysteresis V-play)", ("v_play",)),
+        ("law(EXX,lin T-self)", ("t_self",)),
+        ("law(EXX,lin T-touches)", ("t_touches",)),
+        ("law(shift,lin T-carrier)", ("t_carrier", "carrier")),
+        ("law(EXX,lin trend-T-driver_of)", ("trend_t_driver_of",)),
+        ("law(EXX,bump T-x0)", ("x0",)),
+        ("law(EXX,bump T-w,bump X)", ("w", "x", "bump", "bump_2")),
+        ("law(EXX,lin T-bump_2,bump X)", ("bump_2", "x", "lin", "bump")),
+        ("law(EXX,bump T-bump_2,bump X)", ("t_bump_2", "x", "bump", "bump_2")),
+        ("law(EXX,lin T-tuple,sine X)", ("t_tuple", "x", "lin", "sine")),
+        ("law(EXX,lin T-s,sine X)", ("t_s", "x", "lin", "sine")),
+        ("law(EXX,sine X,sine Y)", ("x", "y", "sine", "sine_2")),
+        ("law(EXX,sign last-X,lin T-last_X)", ("last_x", "t_last_x", "sign", "lin")),
+        ("law(EXX,lin T-a,quad T-A)", ("a", "t_a", "lin", "quad")),
+        ("law(EXX,lin T-a,quad V-A)", ("a", "v_a", "lin", "quad")),
+        ("law(EXX,lin T-k,quad T-\N{KELVIN SIGN})", ("k", "t_k", "lin", "quad")),
+        ("law(EXX,lin T-m\N{SUPERSCRIPT TWO},quad T-m2)", ("m2", "t_m2", "lin", "quad")),
+        ("law(EXX,lin V-\N{VULGAR FRACTION ONE HALF}_bar)", ("v_1_2_bar",)),
+        ("law(EXX,lin T-\N{LATIN CAPITAL LETTER O WITH DIAERESIS}l)", ("\u00f6l",)),
+        ("law(EXX,surface T-one,surface V-shares)",
+         ("t_one", "v_shares", "shares", "inside", "one", "other", "beyond", "kept", "C")),
+    ],
+)  # fmt: skip
+def test_every_name_of_the_file_is_valid_and_its_own(name, written, measured) -> None:
+    sensors = sorted(set(re.findall(r"\b[TV]-\w+", name)))
+    run, found = measured
+    values = {s: 25.0 + 3.0 * np.sin(run.touches.time / 900.0 + k) for k, s in enumerate(sensors)}
+    own = {s[2:]: v for s, v in values.items() if s[0] == "V"}
+    temperature = {s[2:]: v for s, v in values.items() if s[0] == "T"}
+    run = replace(run, touches=replace(run.touches, temperature=temperature, value=own))
+    learning, run, law = learnt((run, found), name, ())
+    text = effect_text(learning, "run.csv")
+    (method,) = [node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.FunctionDef)]
+    targets = [node.targets[0] for node in method.body if isinstance(node, ast.Assign)]
+    assert tuple(
+        name.id for t in targets for name in (t.elts if isinstance(t, ast.Tuple) else [t])
+    ) == written  # fmt: skip
+    effect = loaded(text, run.touches.chain)
+    found, expected = columns([effect], run.touches), columns([law], run.touches)
+    if law.is_surface:
+        (size,) = [p.sd for p in effect.parameters]
+        found = found * size
+        expected = expected @ learning.after.theta[learning.after.of_effect(law.name)][:, None]
+    atol = (0.05 if law.is_surface else 1e-3) * np.abs(expected).max()
+    assert atol > 0.0
+    np.testing.assert_allclose(found, expected, rtol=1e-3, atol=atol)
 
 
 @pytest.mark.parametrize("name", ["law(EZX,curve Y)", "law(EYX,surface X,surface Y)"])
