@@ -6,6 +6,7 @@ import math
 import re
 import unicodedata
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -19,7 +20,7 @@ HEAD = '''"""{title}
 
     matstd diagnose RUN.csv --effects THIS.py --add {first} -o OUT
 
-Learnt from {run}. A law has no cause yet: rename it when you know what it is.
+Learnt from {run}. A law has no cause yet: rename it when you know what it is.{form}
 """
 
 from dataclasses import dataclass
@@ -51,6 +52,10 @@ class {name}(Declared):
 {owner})
 '''
 
+FORM = """
+The form without a formula is that of the run and is not fitted again; its uncertainty is in
+model.toml."""
+
 OF_ITS_RUN = '    belongs_to="run",  # its driver was not recorded: other runs need not repeat it\n'
 
 CURVE_KNOTS, CURVE_FLANKS = 6, 3.0
@@ -60,7 +65,7 @@ by which it goes beyond the domain: there it has died away."""
 
 def effect_text(learning: Learning, run: str) -> str:
     """Text of `effect.py`."""
-    names = learning.effect_names
+    names, run = learning.effect_names, run.replace("\\", "/").replace('"', "'")
     body = "".join(
         _class(learning, one.law, name, run) for one, name in zip(learning.laws, names, strict=True)
     )
@@ -75,7 +80,8 @@ def effect_text(learning: Learning, run: str) -> str:
         imports += [f"from {module} import {', '.join(found)}"] if found else []
     titles = "; ".join(formula_words(one.law) for one in learning.laws)
     title = f"{titles}." if len(titles) < 95 else "Laws that matstd learn found."
-    head = HEAD.format(title=title, first=names[0], run=run, imports="\n".join(imports))
+    form = FORM if any(one.law.is_curve_alone for one in learning.laws) else ""
+    head = HEAD.format(title=title, first=names[0], run=run, imports="\n".join(imports), form=form)
     return head + body.lstrip("\n").join(["\n", ""])
 
 
@@ -83,7 +89,8 @@ def _class(learning: Learning, law: Law, kind: str, run: str) -> str:
     """The class of one law with its card."""
     name = "".join(word.capitalize() for word in kind.split("-"))
     estimates = places(learning, law)
-    fields = [_field(law, i, e) for i, e in enumerate(estimates) if i in _free(law)]
+    scans = replace(law, is_sought=False).inner(learning.after.run.touches)
+    fields = [_field(law, i, estimates[i], scans[i].grid) for i in _free(law)]
     is_entry = law.carrier.symbol is not None or law.carrier.name == "bias"
     entry = f', "{law.carrier.name}"' if is_entry else ""
     units = [f"{law.place_names[i]}: {law.units[i]}" for i in _free(law)]
@@ -130,11 +137,11 @@ def _field_name(name: str) -> str:
     return name.replace("-", "_")
 
 
-def _field(law: Law, index: int, one: Estimate) -> str:
-    """A scanned field about the value that was found."""
+def _field(law: Law, index: int, one: Estimate, scan: Array) -> str:
+    """A scanned field about the value that was found: within 3 u, or as far as the model scans."""
     factor = next(factor for factor, own in law.parts if own.start <= index < own.stop)
     is_instant = factor.shape.jumps and factor.driver.nature == "time"
-    half = 3.0 * one.u if one.u else 0.1 * abs(one.value) or 1.0
+    half = 3.0 * one.u if one.u else 0.5 * float(np.ptp(scan))
     unit = one.unit if one.unit in ("mm", "rad", "s") else "1"
     if one.name.split("-")[0] in ("w", "wa", "wb", "period", "p"):
         half = min(half, 0.5 * abs(one.value))
@@ -209,7 +216,8 @@ def _shapes(
     out = []
     for k, (factor, own) in enumerate(law.parts):
         values, x = dict(zip(factor.shape.places, written[own], strict=True)), names[factor.driver]
-        code = [_with(c, x).format(**values) for c in _from_zero(factor.shape.code, values)]
+        plain = _from_zero(factor.shape.code, values)
+        code = [_with(c, x).format(**values).replace("- -", "+ ") for c in plain]
         out.append(code or [_table(learning, law, k, x)])
     return out
 

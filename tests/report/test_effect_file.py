@@ -9,8 +9,9 @@ import pytest
 from unchanged import drawn
 
 from matstd.diagnosis.fit import fit_run
-from matstd.report.laws import effect_text, law_sentence
+from matstd.report.laws import effect_text, law_sentence, short_words
 from matstd.report.laws.law_page import draw_law
+from matstd.report.laws.law_words import formula_words
 from matstd.twin.library import ordinary_model, parse_effect
 from matstd.twin.model import Model, columns
 from matstd.twin.units import UM
@@ -139,8 +140,9 @@ def test_every_name_of_the_file_is_valid_and_its_own(name, written, measured) ->
 @pytest.mark.parametrize("name", ["law(EZX,curve Y)", "law(EYX,surface X,surface Y)"])
 def test_a_law_without_a_formula_is_a_table(name, measured) -> None:
     learning, run, law = learnt(measured, name, ())
-    text = effect_text(learning, "run.csv")
+    text = effect_text(learning, 'new\\the "run".csv')
     assert max(len(line) for line in text.splitlines()) < 100
+    assert "form without a formula is that of the run" in ast.get_docstring(ast.parse(text))
     effect = loaded(text, run.touches.chain)
     (size,) = [p.sd for p in effect.parameters]
     expected = (
@@ -156,3 +158,66 @@ def test_a_surface_is_drawn_as_a_map_and_a_reversal_from_one_side_to_the_other(
 ) -> None:
     learning, _, law = learnt(measured, name, ())
     unchanged(drawn(draw_law(learning, law)) + "\n")
+
+
+@pytest.mark.parametrize(
+    ("name", "at", "formula", "words"),
+    [
+        ("law(EXX,saw X)", (37.0, 0.0), "EXX = a (2 frac(X/period + phase/(2 pi)) - 1)",
+         r"a saw-tooth of .* µm over X \(period 37.0 mm, phase 0 °, without uncertainty\)\.$"),
+        ("law(EXX,square X)", (80.0, 0.5), "EXX = a sgn sin(2 pi X/period + phase)",
+         r"a square wave of .* µm over X \(period 80.0 mm, phase 28.6 °, without uncertainty\)\.$"),
+        ("law(EXX,sine X)", (80.0,), "EXX = a sin(2 pi X/period) + b cos(2 pi X/period)",
+         r"a sine of .* µm over X \(period 80.\d+ ± 0.\d\d mm\)\.$"),
+        ("law(EZX,bump-after time)", (2000.0, 600.0),
+         "EZX = a (exp(-((time - x0)/w)^2) for time > x0, else 0)",
+         r"a bump that begins at its top of .* over time at 33.\d* ± .* min "
+         r"\(w 10.0 min, without uncertainty\)\.$"),
+        ("law(EYX,step X)", (35.0,), "EYX = a (1 for X > x0, else 0)", r"a step of .* at 35.* mm"),
+        ("law(EXX,settling time)", (0.0, 900.0), "EXX = a (1 - exp(-time/w))", r"\(w 15.0* ± "),
+        ("law(EXX,log time)", (0.0, 900.0), "EXX = a log(1 + time/w)", r"a logarithm of"),
+        ("law(EXX,half-wave azimuth)", (0.2,), "EXX = a max(0, sin(azimuth + phase))",
+         r"\(phase 11.* ± .* °\)"),
+        ("law(EXX,pulse time)", (600.0, 900.0),
+         "EXX = a max(0, time - x0)/w exp(1 - max(0, time - x0)/w)", "a pulse that dies away"),
+        ("law(EYZ,lin Z)", (-250.0, 250.0), "EYZ = a ((Z + 250 mm)/250 mm)",
+         r"µm per 250 mm over Z"),
+        ("law(EXX,lin Z,step X)", (-250.0, 250.0, 0.0),
+         "EXX = a [((Z + 250 mm)/250 mm)] [1 for X > x0, else 0]", r"µm per 250 mm\.$"),
+        ("law(EYX,quad azimuth,quad-about latitude)", (0.0, 1.0, 0.0, 1.0),
+         "EYX = a [(azimuth/rad)^2] [((latitude - x0)/rad)^2]", r" µm per rad² per rad²\.$"),
+        ("law(EXX,kink azimuth)", (0.1, 1.0), "EXX = a max(0, azimuth - x0)/rad",
+         r"µm per rad over azimuth of the contact at"),
+        (f"law(EXX,lin V-{COLUMN}_bar)", (), f"EXX = a (V-{COLUMN}_bar/bar)", r"µm per bar over"),
+        (f"law(EXX,lin V-{COLUMN}_s)", (), f"EXX = a (V-{COLUMN}_s/s)", r"µm per s over"),
+        (f"law(EXX,lin V-{COLUMN}_degC)", (), f"EXX = a (V-{COLUMN}_degC/°C)", r"µm per K over"),
+        (f"law(EXX,lin V-{COLUMN}_1)", (), f"EXX = a (V-{COLUMN}_1/1)", r"µm per 1 over"),
+        ("law(EXX,lin time)", (0.0, 3600.0), "EXX = a (time/h)", r"µm per h over time"),
+    ],
+)  # fmt: skip
+def test_formula_and_sentence_of_a_law(name, at, formula, words, measured) -> None:
+    (run, found), (column,) = measured, measured[0].touches.value.values()
+    own = {COLUMN + unit: column for unit in ("_bar", "_s", "_degC", "_1")}
+    run = replace(run, touches=replace(run.touches, value=own))
+    learning, _, law = learnt((run, found), name, at)
+    assert formula_words(law) == formula
+    assert re.search(words, law_sentence(learning, learning.laws[0]))
+
+
+def test_a_line_through_zero_and_one_with_a_constant_have_words_of_their_own(measured) -> None:
+    chain = measured[0].touches.chain
+    one, other = (
+        parse_effect(f"law(EXX,{word} X,lin T-bed)", chain) for word in ("lin", "lin-from")
+    )
+    assert short_words(one) != short_words(other)
+
+
+def test_a_phase_is_scanned_in_degrees_about_the_one_found(measured) -> None:
+    """A wave of a phase near zero can be refitted: ten degrees to either side, as in the model."""
+    learning, run, _ = learnt(measured, "law(EXX,saw X)", (37.0, -0.03))
+    effect = loaded(effect_text(learning, "run.csv"), run.touches.chain)
+    (phase,) = [i for i in effect.inner(run.touches) if i.name == "phase"]
+    np.testing.assert_allclose(
+        phase.grid, np.radians(np.linspace(-10.0, 10.0, 9)) - 0.03, atol=1e-3
+    )
+    assert phase.unit == "rad"
