@@ -126,22 +126,21 @@ def formula_words(law: Law) -> str:
     for factor, own in law.parts:
         text, _, u = factor.shape.formula.partition(", u = ")
         text = re.sub(r"\bu\b", f"({u})", text)
-        for place, name, value in zip(
-            factor.shape.places, law.place_names[own], law.places[own], strict=True
-        ):
+        words = dict(zip(factor.shape.places, law.place_names[own], strict=True))
+        for place, value in zip(factor.shape.places, law.places[own], strict=True):
             if place == "zero" and value == 0.0:
                 text = text.replace("(x - zero)", "x").replace("x - zero", "x")
-            is_number = place in ("zero", "unit", "k")
-            word = _fixed_words(value, "" if place == "k" else _unit(factor.driver))
-            text = re.sub(rf"\b{place}\b", word if is_number else name, text)
-        text = re.sub(r"\bx\b", factor.driver.name, text).replace("- -", "+ ")
+            if place in ("zero", "unit", "k"):
+                words[place] = _fixed_words(value, "" if place == "k" else _unit(factor.driver))
+        words["x"] = factor.driver.name
+        text = "".join(words.get(part, part) for part in re.split(r"\b", text))
+        text = text.replace("- -", "+ ")
         if len(law.factors) > 1:
             text = f"[{text}]"
         elif not several and re.search(", | - ", _outside_brackets(text)):
             text = f"({text})"
         parts.append(text)
-    lead = "" if several else "a "
-    return f"{law.carrier.name} = {lead}{' '.join(parts)}"
+    return f"{law.carrier.name} = {'' if several else 'a '}{' '.join(parts)}"
 
 
 def _outside_brackets(text: str) -> str:
@@ -150,9 +149,9 @@ def _outside_brackets(text: str) -> str:
 
 
 def _unit(driver: Driver) -> str:
-    """Unit of a variable; of a column of the user's own the one in its name."""
-    own = driver.name.startswith("V-") and "_" in driver.name
-    return driver.name.rpartition("_")[2] if own else driver.unit
+    """Unit of a variable; of a column of the user's own that of its name: `bar`, `l/min`."""
+    own = re.search(r"^V-.*?_((?:(?:[kcm]?[glm]|m3)_(?=(?:s|min|h)$))?[^_]+)$", driver.name)
+    return own[1].replace("_", "/") if own else driver.unit
 
 
 def _fixed_words(value: float, unit: str) -> str:
@@ -162,7 +161,8 @@ def _fixed_words(value: float, unit: str) -> str:
     unit = unit.replace("degC", "°C")
     if unit == "s" and value == HOUR:
         return "h"
-    return unit if unit and value == 1.0 else f"{value:g} {unit}".strip()
+    words = unit if unit and value == 1.0 else f"{value:g} {unit}".strip()
+    return f"({words})" if "/" in words else words
 
 
 _POWERS = {"quad": "²", "quad-about": "²", "cubic": "³", "power": "^p", "play-quad": "²"}

@@ -189,6 +189,10 @@ def test_a_surface_is_drawn_as_a_map_and_a_reversal_from_one_side_to_the_other(
         ("law(EXX,kink azimuth)", (0.1, 1.0), "EXX = a max(0, azimuth - x0)/rad",
          r"µm per rad over azimuth of the contact at"),
         (f"law(EXX,lin V-{COLUMN}_bar)", (), f"EXX = a (V-{COLUMN}_bar/bar)", r"µm per bar over"),
+        (f"law(EXX,lin V-{COLUMN}_l_min)", (), f"EXX = a (V-{COLUMN}_l_min/(l/min))",
+         r"µm per \(l/min\) over"),
+        (f"law(EXX,quad V-{COLUMN}_x)", (), f"EXX = a (V-{COLUMN}_x/x)^2", r"µm per x² over"),
+        (f"law(EXX,quad V-{COLUMN}_l_x)", (), f"EXX = a (V-{COLUMN}_l_x/x)^2", r"µm per x² over"),
         (f"law(EXX,lin V-{COLUMN}_s)", (), f"EXX = a (V-{COLUMN}_s/s)", r"µm per s over"),
         (f"law(EXX,lin V-{COLUMN}_degC)", (), f"EXX = a (V-{COLUMN}_degC/°C)", r"µm per K over"),
         (f"law(EXX,lin V-{COLUMN}_1)", (), f"EXX = a (V-{COLUMN}_1/1)", r"µm per 1 over"),
@@ -197,7 +201,7 @@ def test_a_surface_is_drawn_as_a_map_and_a_reversal_from_one_side_to_the_other(
 )  # fmt: skip
 def test_formula_and_sentence_of_a_law(name, at, formula, words, measured) -> None:
     (run, found), (column,) = measured, measured[0].touches.value.values()
-    own = {COLUMN + unit: column for unit in ("_bar", "_s", "_degC", "_1")}
+    own = {COLUMN + unit: column for unit in ("_bar", "_l_min", "_x", "_l_x", "_s", "_degC", "_1")}
     run = replace(run, touches=replace(run.touches, value=own))
     learning, _, law = learnt((run, found), name, at)
     assert formula_words(law) == formula
