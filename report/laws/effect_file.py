@@ -139,8 +139,8 @@ def _field_name(name: str) -> str:
 
 def _field(law: Law, index: int, one: Estimate, scan: Array) -> str:
     """A scanned field about the value that was found: within 3 u, or as far as the model scans."""
-    factor = next(factor for factor, own in law.parts if own.start <= index < own.stop)
-    is_instant = factor.shape.jumps and factor.driver.nature == "time"
+    factor, own = next(part for part in law.parts if index < part[1].stop)
+    is_instant = factor.driver.nature == "time" and index - own.start in factor.shape.edges
     half = 3.0 * one.u if one.u else 0.5 * float(np.ptp(scan))
     unit = one.unit if one.unit in ("mm", "rad", "s") else "1"
     if one.name.split("-")[0] in ("w", "wa", "wb", "period", "p"):

@@ -48,6 +48,16 @@ class Shape:
         """Which of the parameters a run determines; the others follow from the machine."""
         return tuple(i for i, name in enumerate(self.places) if name not in FIXED)
 
+    @property
+    def edges(self) -> tuple[int, ...]:
+        """Places at which the curve jumps."""
+        return tuple(i for i in self.free if self.jumps and self.places[i][0] == "x")
+
+    @property
+    def smooth(self) -> tuple[int, ...]:
+        """Free parameters with which the curve changes smoothly; a wave that jumps has none."""
+        return tuple(i for i in self.free if not self.jumps or self.places[i] == "w")
+
 
 FIXED = ("zero", "unit", "k", "low", "high", "length", "size")
 """Parameters that follow from the machine or from the data before a formula is fitted."""
