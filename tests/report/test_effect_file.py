@@ -90,6 +90,7 @@ def test_the_file_computes_what_the_law_computes(name, at, measured, unchanged) 
         ("law(EXX,lin T-class)", ("t_class",)),
         ("law(EXX,bump T-np)", ("t_np",)),
         ("law(EXX,hysteresis V-play)", ("v_play",)),
+        ("law(EXX,play V-a,lin X)", ("a", "x", "play_2", "lin")),
         ("law(EXX,lin T-self)", ("t_self",)),
         ("law(EXX,lin T-touches)", ("t_touches",)),
         ("law(shift,lin T-carrier)", ("t_carrier", "carrier")),
