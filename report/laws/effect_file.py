@@ -1,9 +1,12 @@
 """`effect.py`: a law as an effect of the user's own, in thirty lines to be renamed and refined."""
 
+import itertools
 import keyword
 import math
 import re
+import unicodedata
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -17,7 +20,7 @@ HEAD = '''"""{title}
 
     matstd diagnose RUN.csv --effects THIS.py --add {first} -o OUT
 
-Learnt from {run}. A law has no cause yet: rename it when you know what it is.
+Learnt from {run}. A law has no cause yet: rename it when you know what it is.{form}
 """
 
 from dataclasses import dataclass
@@ -49,6 +52,10 @@ class {name}(Declared):
 {owner})
 '''
 
+FORM = """
+The form without a formula is that of the run and is not fitted again; its uncertainty is in
+model.toml."""
+
 OF_ITS_RUN = '    belongs_to="run",  # its driver was not recorded: other runs need not repeat it\n'
 
 CURVE_KNOTS, CURVE_FLANKS = 6, 3.0
@@ -58,12 +65,12 @@ by which it goes beyond the domain: there it has died away."""
 
 def effect_text(learning: Learning, run: str) -> str:
     """Text of `effect.py`."""
-    names = learning.effect_names
+    names, run = learning.effect_names, run.replace("\\", "/").replace('"', "'")
     body = "".join(
         _class(learning, one.law, name, run) for one, name in zip(learning.laws, names, strict=True)
     )
     used = [
-        ("matstd.twin.laws", ("SHAPES", "carrier_of", "driver_of", "play"), r"\b{}[([]"),
+        ("matstd.twin.laws", ("carrier_of", "driver_of", "play"), r"\b{}[([]"),
         ("matstd.twin.model", ("Declared", "Kind", "Parameter", "scanned"), r"\b{}\b"),
         ("matstd.twin.units", ("UM", "URAD"), r" {}\b"),
     ]
@@ -73,7 +80,8 @@ def effect_text(learning: Learning, run: str) -> str:
         imports += [f"from {module} import {', '.join(found)}"] if found else []
     titles = "; ".join(formula_words(one.law) for one in learning.laws)
     title = f"{titles}." if len(titles) < 95 else "Laws that matstd learn found."
-    head = HEAD.format(title=title, first=names[0], run=run, imports="\n".join(imports))
+    form = FORM if any(one.law.is_curve_alone for one in learning.laws) else ""
+    head = HEAD.format(title=title, first=names[0], run=run, imports="\n".join(imports), form=form)
     return head + body.lstrip("\n").join(["\n", ""])
 
 
@@ -81,7 +89,8 @@ def _class(learning: Learning, law: Law, kind: str, run: str) -> str:
     """The class of one law with its card."""
     name = "".join(word.capitalize() for word in kind.split("-"))
     estimates = places(learning, law)
-    fields = [_field(law, i, e) for i, e in enumerate(estimates) if i in _free(law)]
+    scans = replace(law, is_sought=False).inner(learning.after.run.touches)
+    fields = [_field(law, i, estimates[i], scans[i].grid) for i in _free(law)]
     is_entry = law.carrier.symbol is not None or law.carrier.name == "bias"
     entry = f', "{law.carrier.name}"' if is_entry else ""
     units = [f"{law.place_names[i]}: {law.units[i]}" for i in _free(law)]
@@ -128,11 +137,11 @@ def _field_name(name: str) -> str:
     return name.replace("-", "_")
 
 
-def _field(law: Law, index: int, one: Estimate) -> str:
-    """A scanned field about the value that was found."""
-    factor = next(factor for factor, own in law.parts if own.start <= index < own.stop)
-    is_instant = factor.shape.jumps and factor.driver.nature == "time"
-    half = 3.0 * one.u if one.u else 0.1 * abs(one.value) or 1.0
+def _field(law: Law, index: int, one: Estimate, scan: Array) -> str:
+    """A scanned field about the value that was found: within 3 u, or as far as the model scans."""
+    factor, own = next(part for part in law.parts if index < part[1].stop)
+    is_instant = factor.driver.nature == "time" and index - own.start in factor.shape.edges
+    half = 3.0 * one.u if one.u else 0.5 * float(np.ptp(scan))
     unit = one.unit if one.unit in ("mm", "rad", "s") else "1"
     if one.name.split("-")[0] in ("w", "wa", "wb", "period", "p"):
         half = min(half, 0.5 * abs(one.value))
@@ -171,24 +180,21 @@ def _parameter(one: Estimate) -> str:
 
 def _body(learning: Learning, law: Law, estimates: Sequence[Estimate], is_entry: bool) -> str:
     """Lines of the method: the variables, the shapes, and what they move."""
-    names = {driver: _identifier(driver.name) for driver in law.drivers}
+    shape_names, letters, names = _names(law)
     lines = [f"{names[driver]} = {_variable(driver.name)}" for driver in law.drivers]
     if law.is_surface:
-        lines += _series(learning, law, list(names.values()))
+        lines += _series(learning, law, [names[driver] for driver in law.drivers])
         return "\n".join(f"        {line}" for line in lines)
     shapes = _shapes(learning, law, estimates, names)
     if len(shapes) == 1:
         products = _tuple(shapes[0], 8)
     else:
-        one, other = (_identifier(f.shape.word) for f in law.factors)
-        other = f"{other}_2" if one == other else other
-        for name, code in zip((one, other), shapes, strict=True):
+        each = list(zip(shape_names, letters, shapes, strict=True))
+        for name, _, code in each:
             lines.append(f"{name} = {code[0] if len(code) == 1 else _tuple(code, 8)}")
-        several = [(n, n[0]) for n, code in zip((one, other), shapes, strict=True) if len(code) > 1]
-        loops = " ".join(f"for {letter} in {name}" for name, letter in several)
-        parts = dict(several)
-        product = f"{parts.get(one, one)} * {parts.get(other, other)}"
-        products = f"tuple({product} {loops})" if several else f"({product},)"
+        loops = " ".join(f"for {letter} in {name}" for name, letter, code in each if len(code) > 1)
+        product = " * ".join(letter if len(code) > 1 else name for name, letter, code in each)
+        products = f"tuple({product} {loops})" if loops else f"({product},)"
     if not is_entry:
         lines.append(f'carrier = carrier_of("{law.carrier.name}", touches.chain)')
         products = f"carrier.terms(touches, {products})"
@@ -210,7 +216,8 @@ def _shapes(
     out = []
     for k, (factor, own) in enumerate(law.parts):
         values, x = dict(zip(factor.shape.places, written[own], strict=True)), names[factor.driver]
-        code = [_with(c, x).format(**values) for c in _from_zero(factor.shape.code, values)]
+        plain = _from_zero(factor.shape.code, values)
+        code = [_with(c, x).format(**values).replace("- -", "+ ") for c in plain]
         out.append(code or [_table(learning, law, k, x)])
     return out
 
@@ -227,10 +234,43 @@ def _with(code: str, x: str) -> str:
     return re.sub(r"(?<![\w{.])x(?![\w}])", x, code)
 
 
-def _identifier(name: str) -> str:
-    """A name for Python: `y` of Y, `spindle` of T-spindle, `bump_after` of bump-after."""
-    word = name.removeprefix("T-").removeprefix("V-").replace("-", "_").lower()
-    return f"{word}_" if keyword.iskeyword(word) or word in ("np", "self", "touches") else word
+_TAKEN = (
+    *("self", "touches", "np", "tuple", "play", "carrier", "carrier_of", "driver_of"),
+    *("shares", "inside", "one", "other", "beyond", "kept"),
+)
+"""Names that the method of a law uses beside those of its variables and shapes."""
+
+
+def _names(law: Law) -> tuple[list[str], list[str], dict[Driver, str]]:
+    """Names of the shapes, letters for their coefficients, and names of the variables.
+
+    All are valid in Python and distinct: `y` of Y, `last_x` of last-X, `spindle` of T-spindle.
+    A sensor whose short name is taken or invalid keeps its letter: `t_x`, `v_2nd_tank_bar`.
+    """
+    taken = set(_TAKEN)
+
+    def distinct(*wanted: str) -> str:
+        words = [_word(name) for name in wanted]
+        numbered = (f"{words[-1]}_{k}" for k in itertools.count(2))
+        name = next(w for w in itertools.chain(words, numbered) if w not in taken and _is_name(w))
+        taken.add(name)
+        return name
+
+    shapes = [distinct(factor.shape.word) for factor in law.factors]
+    letters = [distinct(factor.shape.word[0]) for factor in law.factors]
+    readings = sorted(law.drivers, key=lambda driver: driver.name[:2] in ("T-", "V-"))
+    short = {driver: driver.name.removeprefix("T-").removeprefix("V-") for driver in readings}
+    return shapes, letters, {d: distinct(name, d.name) for d, name in short.items()}
+
+
+def _word(name: str) -> str:
+    """A name with `_` for what cannot stand in a name of Python, which knows it in form NFKC."""
+    text = unicodedata.normalize("NFKC", name.lower())
+    return "".join(c if f"a{c}".isidentifier() else "_" for c in text)
+
+
+def _is_name(word: str) -> bool:
+    return word.isidentifier() and not keyword.iskeyword(word)
 
 
 def _variable(name: str) -> str:

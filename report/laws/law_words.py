@@ -40,7 +40,7 @@ _CARRIERS = {
 _SHAPES = {
     "sign": "a reversal",
     "lin": "a straight line",
-    "lin-from": "a straight line",
+    "lin-from": "a straight line with a constant",
     "quad": "a parabola",
     "quad-about": "a parabola",
     "cubic": "a third power",
@@ -121,32 +121,48 @@ def formula_words(law: Law) -> str:
     if law.is_surface:
         over = listed([driver.name for driver in law.drivers])
         return f"{law.carrier.name} = {law.factors[0].shape.formula} {over}"
+    several = any(len(f.shape.coefficients) > 1 for f in law.factors)
     parts = []
     for factor, own in law.parts:
         text, _, u = factor.shape.formula.partition(", u = ")
         text = re.sub(r"\bu\b", f"({u})", text)
-        for place, name, value in zip(
-            factor.shape.places, law.place_names[own], law.places[own], strict=True
-        ):
+        words = dict(zip(factor.shape.places, law.place_names[own], strict=True))
+        for place, value in zip(factor.shape.places, law.places[own], strict=True):
             if place == "zero" and value == 0.0:
                 text = text.replace("(x - zero)", "x").replace("x - zero", "x")
-            is_number = place in ("zero", "unit", "k")
-            word = _fixed_words(value, "" if place == "k" else factor.driver.unit)
-            text = re.sub(rf"\b{place}\b", word if is_number else name, text)
-        text = re.sub(r"\bx\b", factor.driver.name, text)
-        parts.append(f"[{text}]" if len(law.factors) > 1 else text)
-    lead = "" if any(len(f.shape.coefficients) > 1 for f in law.factors) else "a "
-    return f"{law.carrier.name} = {lead}{' '.join(parts)}"
+            if place in ("zero", "unit", "k"):
+                words[place] = _fixed_words(value, "" if place == "k" else _unit(factor.driver))
+        words["x"] = factor.driver.name
+        text = "".join(words.get(part, part) for part in re.split(r"\b", text))
+        text = text.replace("- -", "+ ")
+        if len(law.factors) > 1:
+            text = f"[{text}]"
+        elif not several and re.search(", | - ", _outside_brackets(text)):
+            text = f"({text})"
+        parts.append(text)
+    return f"{law.carrier.name} = {'' if several else 'a '}{' '.join(parts)}"
+
+
+def _outside_brackets(text: str) -> str:
+    inner = re.sub(r"\([^()]*\)", "", text)
+    return text if inner == text else _outside_brackets(inner)
+
+
+def _unit(driver: Driver) -> str:
+    """Unit of a variable; of a column of the user's own that of its name: `bar`, `l/min`."""
+    own = re.search(r"^V-.*?_((?:(?:[kcm]?[glm]|m3)_(?=(?:s|min|h)$))?[^_]+)$", driver.name)
+    return own[1].replace("_", "/") if own else driver.unit
 
 
 def _fixed_words(value: float, unit: str) -> str:
     """`20 °C`, `300 mm`, `h`: a number of a formula that follows from the machine."""
-    if unit == "s":
-        value, unit = value / HOUR, "h"
     if unit == "1/min":
         return f"({value:g}/min)"
     unit = unit.replace("degC", "°C")
-    return unit if unit and value == 1.0 else f"{value:g} {unit}".strip()
+    if unit == "s" and value == HOUR:
+        return "h"
+    words = unit if unit and value == 1.0 else f"{value:g} {unit}".strip()
+    return f"({words})" if "/" in words else words
 
 
 _POWERS = {"quad": "²", "quad-about": "²", "cubic": "³", "power": "^p", "play-quad": "²"}
@@ -170,11 +186,9 @@ def _is_per(factor: Factor, one: Estimate) -> bool:
 
 
 def _unit_of(law: Law, factor: Factor, own: slice) -> str:
-    """What a slope over a variable is per: `K`, `(300 mm)²`, `90 °`."""
-    value, unit = law.places[own][factor.shape.places.index("unit")], factor.driver.unit
-    if unit == "rad":
-        value, unit = value / DEG, "°"
-    words = "K" if (value, unit) == (1.0, "degC") else _fixed_words(value, unit).replace("°C", "K")
+    """What a slope over a variable is per: `K`, `(300 mm)²`, `rad`, `bar`."""
+    value = law.places[own][factor.shape.places.index("unit")]
+    words = _fixed_words(value, _unit(factor.driver)).replace("°C", "K")
     power = _POWERS.get(factor.shape.word, "")
     return f"({words}){power}" if power and " " in words else f"{words}{power}"
 
@@ -201,16 +215,17 @@ def law_sentence(learning: Learning, one: LearntLaw) -> str:
 
 def short_words(law: Law) -> str:
     """A law without its numbers: `EBY as a parabola over the temperature spindle`."""
-    fixed = [Estimate(n, v, None, "1") for n, v in law.tuning.items()]
-    return f"{carrier_words(law.carrier)} as {_shapes_words(law, fixed)}"
+    return f"{carrier_words(law.carrier)} as {_shapes_words(law)}"
 
 
-def _shapes_words(law: Law, numbers: Sequence[Estimate], size: str = "") -> str:
+def _shapes_words(law: Law, numbers: Sequence[Estimate] = (), size: str = "") -> str:
     """Shapes of a law in words; a surface is one over both variables."""
     if law.is_surface:
         one, other = (variable_words(driver) for driver in law.drivers)
         return f"{_SHAPES['surface']} over {one} and {other}"
-    return " times ".join(_shape_words(factor, numbers[own], size) for factor, own in law.parts)
+    return " times ".join(
+        _shape_words(factor, law.places[own], numbers[own], size) for factor, own in law.parts
+    )
 
 
 def _carried_words(carrier: Carrier, alike: Sequence[Carrier]) -> str:
@@ -225,18 +240,23 @@ def _carried_words(carrier: Carrier, alike: Sequence[Carrier]) -> str:
     return f"{words} ({'; '.join(notes)})" if notes else words
 
 
-def _shape_words(factor: Factor, numbers: Sequence[Estimate], size: str = "") -> str:
+def _shape_words(
+    factor: Factor, values: Sequence[float], numbers: Sequence[Estimate], size: str = ""
+) -> str:
     """`a bump of -10.3 ± 0.3 µm over Y at 7.7 ± 0.6 mm (w 48.0 ± 1.4 mm)`.
 
     Args:
-        numbers: Parameters of the shape; those with an uncertainty are stated.
+        values: Of the parameters of the shape.
+        numbers: The same with their uncertainties, to be stated; empty for none of them.
     """
-    plain = [p._replace(name=p.name.removesuffix("-2")) for p in numbers if p.u is not None]
+    free = [numbers[i] for i in factor.shape.free] if numbers else []
+    plain = [p._replace(name=p.name.removesuffix("-2")) for p in free]
     edges = [place_words(p).split(maxsplit=1)[1] for p in plain if p.name in _EDGES]
     others = [place_words(p) for p in plain if p.name not in _EDGES]
+    others += ["without uncertainty"] if any(p.u is None for p in plain) else []
     words = _SHAPES[factor.shape.word]
     if factor.shape.word == "harmonic":
-        words = f"{numbers[0].value:.0f} {words}" if numbers[0].value > 1 else "one wave a turn"
+        words = f"{values[0]:.0f} {words}" if values[0] > 1 else "one wave a turn"
     words += f" of {size}" if size else ""
     words += f" over {variable_words(factor.driver)}"
     if edges:
@@ -246,8 +266,8 @@ def _shape_words(factor: Factor, numbers: Sequence[Estimate], size: str = "") ->
 
 def size_words(learning: Learning, law: Law) -> str:
     """Size of a law with the parameters of its shapes, each with its uncertainty."""
-    where = [place_words(p) for p in places(learning, law) if p.u is not None]
-    return ", ".join([_size(learning, law), *where])
+    numbers = places(learning, law)
+    return ", ".join([_size(learning, law), *(place_words(numbers[i]) for i in law.free)])
 
 
 def _size(learning: Learning, law: Law) -> str:

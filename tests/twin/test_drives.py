@@ -1,5 +1,6 @@
 """Effects after recorded drives, against the differential equation solved by another library."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -172,6 +173,42 @@ def test_columns_of_the_users_own_go_through_a_file(touches, tmp_path) -> None:
     (tmp_path / "cold.csv").write_text("\n".join(text).replace("T_bed_degC", "T_bed") + "\n")
     with pytest.raises(BadFile, match=r"T_bed: found no unit.*T_bed_degC"):
         read_run(tmp_path / "cold.csv")
+
+
+@pytest.mark.parametrize(
+    ("column", "sign", "accepted"),
+    [
+        ("V_2nd-tank_bar", "'-' (hyphen-minus)", "V_2nd_tank_bar"),
+        ("V_tank 2_bar", "' ' (space)", "V_tank_2_bar"),
+        ("V_\u00d6ldruck (Tank 2)_bar", "' ' (space)", "V_\u00d6ldruck_Tank_2_bar"),
+        ("V_O\u0308l_bar", "'\u0308' (combining diaeresis)", "V_\u00d6l_bar"),
+        ("V_flow_l/min", "'/' (solidus)", "V_flow_l_min"),
+        ("V_tank-2", "'-' (hyphen-minus)", "V_tank_2_bar"),
+        ("V_-_bar", "'-' (hyphen-minus)", "V_bar_bar"),
+        ("T_head-1_degC", "'-' (hyphen-minus)", "T_head_1_degC"),
+        ("T_head-1", "'-' (hyphen-minus)", "T_head_1_degC"),
+        ("T_(_degC", "'(' (left parenthesis)", "T_bed_degC"),
+    ],
+)
+def test_a_name_is_refused_by_the_sign_that_cannot_stand_in_it(
+    column, sign, accepted, touches, tmp_path
+) -> None:
+    """What the message proposes is read."""
+    (tmp_path / "m.toml").write_text(
+        'format = "machine/1"\nname = "gauge"\nchain = "[w f Z t]"\n'
+        "[axis.Z]\nrange = [0.0, 350.0]\n"
+    )
+    path = tmp_path / "run.csv"
+    write_run(path, gauge_run(touches, np.random.default_rng(1).normal(size=N) * UM), "m.toml")
+    own = {"V": "V_flow_l_min", "T": "T_bed_degC"}[column[0]]
+    text = path.read_text(encoding="utf-8")
+    path.write_text(text.replace(own, column), encoding="utf-8")
+    words = f"column {column}: found {sign}, expected a name of letters, digits and _, its unit"
+    with pytest.raises(BadFile, match=re.escape(words) + f".* such as {accepted}$"):
+        read_run(path)
+    path.write_text(text.replace(own, accepted), encoding="utf-8")
+    read = read_run(path).touches
+    assert accepted[2:].removesuffix("_degC") in {*read.value, *read.temperature}
 
 
 def test_a_drift_test_read_coarsely_is_no_pile_of_copies(touches) -> None:

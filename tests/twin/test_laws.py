@@ -161,3 +161,14 @@ def test_a_driver_of_one_run_is_as_large_as_uncertain_in_another() -> None:
     size = np.sqrt((moved**2).sum(axis=1).mean())
     assert [p.sd for p in elsewhere.parameters] == [1.0] * moved.shape[1]
     assert size == pytest.approx(13.0e-3, rel=0.1)
+
+
+def test_what_a_run_fixes_by_its_edges_and_what_it_fixes_smoothly() -> None:
+    """Half a bump jumps at its top alone; a wave that jumps does so at edges that all move."""
+    named = {w: [SHAPES[w].places[i] for i in SHAPES[w].smooth] for w in SHAPES}
+    edges = {w: [SHAPES[w].places[i] for i in SHAPES[w].edges] for w in SHAPES}
+    assert (edges["bump-after"], named["bump-after"]) == (["x0"], ["w"])
+    assert (edges["bump-before"], named["bump-before"]) == (["x0"], ["w"])
+    assert (edges["window"], named["window"]) == (["x1", "x2"], [])
+    assert (edges["saw"], named["saw"]) == ([], [])
+    assert (edges["bump"], named["bump"]) == ([], ["x0", "w"])

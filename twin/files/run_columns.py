@@ -1,6 +1,7 @@
 """Columns of a run file as arrays in base units; faults are corrected and reported, or refused."""
 
 import re
+import unicodedata
 from collections.abc import Sequence
 from itertools import pairwise
 
@@ -158,17 +159,29 @@ def own_columns(table: CsvTable, at: Array, remarks: list[str]) -> dict[str, Arr
 
 
 def check_units(table: CsvTable) -> None:
-    """Recorded columns say their unit; raises BadFile."""
+    """Recorded columns say their unit, in letters, digits and `_`; raises BadFile."""
     for column in table.columns:
-        name = column[2:]
-        if column.startswith("V_") and not OWN.match(column):
-            expected = f"its unit behind the name, such as V_{name.strip('_') or 'coolant'}_bar"
-        elif column.startswith("T_") and not SENSOR.match(column):
-            expected = f"its unit behind the name: T_{name.partition('_')[0] or 'bed'}_degC"
-        else:
+        pattern, name = {"T_": SENSOR, "V_": OWN}.get(column[:2]), column[2:]
+        if pattern is None or pattern.match(column):
             continue
+        found, expected = "no unit that is known", "its unit behind the name"
+        if odd := re.search(r"\W", name):
+            found = f"{odd.group()!r} ({unicodedata.name(odd.group(), 'unknown').lower()})"
+            expected = "a name of letters, digits and _, its unit behind it"
+        accepted = f"{column[:2]}{_plain(name)}"
+        if "_" not in name or not pattern.match(accepted):
+            accepted = (
+                f"T_{_plain(name.partition('_')[0]) or 'bed'}_degC"
+                if pattern is SENSOR
+                else f"V_{_plain(name) or 'coolant'}_bar"
+            )
         where = f"line {table.header_line}, column {column}"
-        raise BadFile(table.path, where, "no unit that is known", expected)
+        raise BadFile(table.path, where, found, f"{expected}, such as {accepted}")
+
+
+def _plain(name: str) -> str:
+    """A name with `_` for what is no letter or digit; a letter and its accent are one sign."""
+    return re.sub(r"[\W_]+", "_", unicodedata.normalize("NFC", name)).strip("_")
 
 
 def _mended(

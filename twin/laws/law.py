@@ -289,9 +289,9 @@ class Law:
                     values = value + _spacing(name, value, span) * np.array([-1.0, 0.0, 1.0])
                 else:
                     values = np.unique(scan[:, k])
-                is_free = k in factor.shape.free and not factor.shape.jumps
+                is_free = k in factor.shape.smooth
                 unit = self.units[i] if self.units[i] in ("mm", "rad", "s") else "1"
-                is_instant = factor.driver.nature == "time" and factor.shape.jumps
+                is_instant = factor.driver.nature == "time" and k in factor.shape.edges
                 made = Inner(self.place_names[i], unit, values, is_free)
                 out.append(made._replace(acts="at an instant") if is_instant else made)
                 i += 1

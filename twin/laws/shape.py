@@ -48,6 +48,16 @@ class Shape:
         """Which of the parameters a run determines; the others follow from the machine."""
         return tuple(i for i, name in enumerate(self.places) if name not in FIXED)
 
+    @property
+    def edges(self) -> tuple[int, ...]:
+        """Places at which the curve jumps."""
+        return tuple(i for i in self.free if self.jumps and self.places[i][0] == "x")
+
+    @property
+    def smooth(self) -> tuple[int, ...]:
+        """Free parameters with which the curve changes smoothly; a wave that jumps has none."""
+        return tuple(i for i in self.free if not self.jumps or self.places[i] == "w")
+
 
 FIXED = ("zero", "unit", "k", "low", "high", "length", "size")
 """Parameters that follow from the machine or from the data before a formula is fitted."""
@@ -169,7 +179,7 @@ SHAPES: dict[str, Shape] = {
                "np.exp(-(((x - {x0}) / {w}) ** 2)) * (x < {x0})", "x0", "w", jumps=True),
         _shape("bump-after", "exp(-((x - x0)/w)^2) for x > x0, else 0",
                "np.exp(-(((x - {x0}) / {w}) ** 2)) * (x > {x0})", "x0", "w", jumps=True),
-        _shape("pulse", "v exp(1 - v), v = max(0, x - x0)/w",
+        _shape("pulse", "max(0, x - x0)/w exp(1 - max(0, x - x0)/w)",
                "np.maximum(x - {x0}, 0.0) / {w} * np.exp(1.0 - np.maximum(x - {x0}, 0.0) / {w})",
                "x0", "w"),
         _shape("step", "1 for x > x0, else 0", "(x > {x0}) * 1.0", "x0", jumps=True),
@@ -205,7 +215,7 @@ SHAPES: dict[str, Shape] = {
         _shape("square", "sgn sin(2 pi x/period + phase)",
                "np.sign(np.sin(2 * np.pi * x / {period} + {phase}))", "period", "phase",
                jumps=True),
-        _shape("saw", "2 frac(x/period + phase/2 pi) - 1",
+        _shape("saw", "2 frac(x/period + phase/(2 pi)) - 1",
                "2.0 * np.mod(x / {period} + {phase} / (2 * np.pi), 1.0) - 1.0", "period", "phase",
                jumps=True),
         _shape("half-wave", "max(0, sin(x + phase))", "np.maximum(np.sin(x + {phase}), 0.0)",
