@@ -304,10 +304,8 @@ def library_sentence(one: LearntLaw) -> str:
     if one.is_of_library and not one.is_behind_library:
         return f"The library explains it as well: {name} (odds {odds_words(odds)} for the law)."
     if odds < 0.0:
-        return (
-            f"The library explains it better: {name} (odds {odds_words(-odds)}). Take that effect: "
-            f'matstd diagnose --add "{name}".'
-        )
+        better = f"The library explains it better: {name} (odds {odds_words(-odds)})."
+        return f'{better} Take that effect: matstd diagnose --add "{name}".'
     return f"The nearest effect of the library is {name} (odds {odds_words(odds)} for the law)."
 
 
