@@ -24,6 +24,7 @@ from matstd.diagnosis.laws.formulas import Candidate
 from matstd.diagnosis.laws.learnt import Learning, LearntLaw, Rival
 from matstd.diagnosis.laws.library import nearest_of_library
 from matstd.diagnosis.laws.policy import POLICY, LawPolicy
+from matstd.diagnosis.laws.screening import Field
 from matstd.diagnosis.laws.search import Ground, Searched, search_law
 from matstd.diagnosis.laws.space import Space
 from matstd.diagnosis.regression import GrossErrors, f_probability
@@ -224,7 +225,7 @@ def _of_gross_errors(
     gross = first.before.gross
     rows = _alike(gross)
     is_left = rows & ~(first.fit if first.is_kept else first.before).used
-    if is_left.sum() < MIN_EXPLAINED or not _have_carrier(gross, rows, ground, policy):
+    if is_left.sum() < MIN_EXPLAINED or not _have_carrier(gross, rows, ground.field):
         return None
     fewer = replace(gross, rows=gross.rows & ~rows)
     whole = replace(start, memory=None).fitted(laws, gross=fewer)
@@ -232,14 +233,17 @@ def _of_gross_errors(
     return tried if tried.is_kept else None
 
 
-def _have_carrier(gross: GrossErrors, rows: Mask, ground: Ground, policy: LawPolicy) -> bool:
-    """Whether one amount of a carrier explains more of gross errors than chance does."""
-    score, bearers = gross.score[rows], ground.field.bearers
-    least = np.exp(-policy.min_score) / len(bearers)
+def _have_carrier(gross: GrossErrors, rows: Mask, field: Field) -> bool:
+    """Whether one amount of a carrier explains more of gross errors than the best does by chance.
+
+    Of as many carriers one is expected to reach a probability of one over their number. Four
+    touches beyond an edge, of unequal levers, had 0.003.
+    """
+    score, bearers = gross.score[rows], field.bearers
     for C in (bearer.C[rows] for bearer in bearers):
         left = score - C @ np.linalg.lstsq(C, score)[0]
         drop, rest = float(score @ score - left @ left), float(left @ left)
-        if f_probability(drop, C.shape[1], rest, len(C) - C.shape[1]) < least:
+        if f_probability(drop, C.shape[1], rest, len(C) - C.shape[1]) < 1.0 / len(bearers):
             return True
     return False
 

@@ -11,7 +11,9 @@ from matstd.api.learning import LearntLaws
 from matstd.api.saved import extended
 from matstd.diagnosis.fit import fit_run
 from matstd.diagnosis.laws import SecondRun
+from matstd.diagnosis.laws.learn import _have_carrier
 from matstd.diagnosis.laws.library import LibraryEffect
+from matstd.diagnosis.laws.screening import field_of
 from matstd.diagnosis.laws.search import _is_seen
 from matstd.report.laws import second_run_sentence
 from matstd.report.laws.law_page import law_sections
@@ -92,3 +94,21 @@ def test_a_product_is_largest_near_a_touch(stylus, width, is_seen) -> None:
     law = parse_effect("law(EXX,exp X,exp Z)", touches.chain).tuned(*places)
     np.testing.assert_allclose(law.amounts(touches)[0], at_touches)
     assert _is_seen(law, touches) == is_seen
+
+
+def test_accidents_have_no_carrier_in_common(stylus) -> None:
+    """Six touches that one carrier moved by one amount have; of random sizes and signs not."""
+    fit = stylus[2].before
+    field = field_of(fit.run.touches, fit.run.u)
+    lever = next(b.C[:, 0] for b in field.bearers if b.carrier.symbol is not None)
+    rng = np.random.default_rng(4)
+    found = []
+    for k in range(30):
+        rows = np.zeros(len(lever), dtype=bool)
+        rows[rng.choice(np.flatnonzero(np.abs(lever) > np.abs(lever).mean()), 6, False)] = True
+        moved = lever * (10.0 / np.abs(lever).max()) + rng.normal(0.0, 1.0, len(lever))
+        chips = rng.choice([-1.0, 1.0], len(lever)) * rng.uniform(5.0, 20.0, len(lever))
+        score = np.where(rows, moved if k % 2 else chips, 0.0)
+        found.append(_have_carrier(replace(fit.gross, score=score), rows, field))
+    assert all(found[1::2])
+    assert sum(found[::2]) <= 7
