@@ -112,7 +112,7 @@ def _law(learning: Learning, one: LearntLaw, effect: str) -> dict[str, Any]:
         if one.library is None
         else {
             "effect": one.library.effect.name,
-            "log_odds_against": one.score - one.library.score,
+            "log_odds_against": one.library_odds,
         },
         "class": [{"law": law.name, "share": share} for law, share in one.members(policy)],
         "rivals": [

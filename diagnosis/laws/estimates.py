@@ -1,17 +1,22 @@
 """Numbers of a law with their uncertainties, and what a second run says of it."""
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
 
 from matstd.diagnosis.fit import Fit, fit_run
+from matstd.diagnosis.laws.formulas import spread
 from matstd.diagnosis.laws.learnt import Learning
+from matstd.diagnosis.laws.space import Space
 from matstd.diagnosis.regression import GrossErrors
 from matstd.twin.frames import Array
 from matstd.twin.laws import CLOCK, Driver, Law, surface_columns
 from matstd.twin.model import Model, columns
 from matstd.twin.record import Run, with_commanded, without_copies
+
+GRID_OF_WAVE = 41  # points of frequency and of phase of a wave at which its evidence is taken
 
 
 class Estimate(NamedTuple):
@@ -37,19 +42,65 @@ def amplitudes(learning: Learning, law: Law) -> list[Estimate]:
 
 
 def places(learning: Learning, law: Law) -> list[Estimate]:
-    """Parameters of its shapes; of an edge half the gap between the touches on either side."""
-    fit, out = learning.tangent, []
+    """Parameters of its shapes.
+
+    Of an edge the uncertainty is that of half the gap between the touches on either side.
+    """
+    fit, out, waves = learning.tangent, [], _wave_uncertainties(learning, law)
     tangents = {t.index: fit.of_effect(t.name) for t in fit.tangents if t.effect.name == law.name}
     drivers = [f.driver for f in law.factors for _ in f.shape.places]
     jumps = [f.shape.jumps for f in law.factors for _ in f.shape.places]
     for i, (name, value) in enumerate(law.tuning.items()):
-        u = None
         if i in tangents:
-            u = float(np.sqrt(fit.covariance[tangents[i], tangents[i]][0, 0]))
+            u: float | None = float(np.sqrt(fit.covariance[tangents[i], tangents[i]][0, 0]))
         elif jumps[i] and name.startswith("x"):
             u = _half_gap(drivers[i], fit, value) / np.sqrt(3.0)
+        else:
+            u = waves.get(i)
         out.append(Estimate(name, value, u, law.units[i]))
     return out
+
+
+@lru_cache(maxsize=8)  # every page and file states them
+def _wave_uncertainties(learning: Learning, law: Law) -> dict[int, float]:
+    """Standard uncertainty of period and phase of a wave that jumps, by the number of the place.
+
+    The sum of squares jumps with the touches that the wave passes, so that it has no tangent.
+    The evidence is taken on a grid of frequencies and of phases in the middle of the touches, which
+    hardly depend on each other, and weighs every point; three grids, each narrower than the last.
+    """
+    found = [(f, own) for f, own in law.parts if f.shape.jumps and "period" in f.shape.places]
+    if not found:
+        return {}
+    ((factor, own),) = found[:1]
+    others = [one.law for one in learning.laws if one.law.name != law.name]
+    white = replace(learning.beginning, memory=None)
+    space = Space.of(white.fitted(others, gross=learning.after.gross))
+    C = space.white(law.carrier.columns(space.touches))
+    x = factor.driver.values(space.touches)[space.used]
+    middle, (period, phase) = 0.5 * float(x.min() + x.max()), law.places[own]
+    # of the grid, 1 / unit of x and rad
+    half, centre = np.array([0.5 / max(float(np.ptp(x)), period), 1.0]), np.zeros(2)
+    side = np.linspace(-1.0, 1.0, GRID_OF_WAVE)
+    steps = np.stack(np.meshgrid(side, side, indexing="ij"), axis=-1).reshape(-1, 2)
+    for heat in (100.0, 10.0, 1.0):
+        away = centre + half * steps
+        frequency = 1.0 / period + away[:, 0]
+        phases = phase + away[:, 1] - 2.0 * np.pi * middle * away[:, 0]
+        explained = []
+        for at in zip(1.0 / frequency, phases, strict=True):
+            moved = law.tuned(*law.places[: own.start], *at, *law.places[own.stop :])
+            S = np.stack(moved.amounts(space.touches), axis=1)
+            explained.append(space.explained(spread(C, S)))
+        gained = space.gained(np.array(explained))
+        weight = np.exp((gained - gained.max()) / heat)
+        weight /= weight.sum()
+        centre = weight @ away
+        spacing = half * (side[1] - side[0])
+        half = 2.0 * np.maximum(np.sqrt(weight @ (away - centre) ** 2), spacing)
+    # about what was found, which may stand anywhere where the sum of squares is the same
+    off = (1.0 / frequency - period, phases - phase)
+    return {own.start + k: float(np.sqrt(weight @ v**2)) for k, v in enumerate(off)}
 
 
 def _half_gap(driver: Driver, fit: Fit, value: float) -> float:

@@ -234,9 +234,9 @@ def _of_gross_errors(
 
 
 def _have_carrier(gross: GrossErrors, rows: Mask, field: Field) -> bool:
-    """Whether one amount of a carrier explains more of gross errors than the best does by chance.
+    """Whether one amount of one carrier explains gross errors better than is expected by chance.
 
-    Of as many carriers one is expected to reach a probability of one over their number. Four
+    Of n carriers one is expected to explain so much that chance has a probability of 1/n. Four
     touches beyond an edge, of unequal levers, had 0.003.
     """
     score, bearers = gross.score[rows], field.bearers
@@ -356,8 +356,8 @@ def _by_rival(best: LearntLaw, is_searched: bool, policy: LawPolicy) -> Refusal 
     """
     if best.memory > best.score:
         return Refusal.MEMORY
-    library = best.library.score if best.library and not is_searched else -np.inf
-    return Refusal.LIBRARY if library > best.score + policy.class_odds else None
+    is_worse = not is_searched and best.library_odds < -policy.class_odds
+    return Refusal.LIBRARY if is_worse else None
 
 
 def _learnt(searched: Searched, taken: Collection[str]) -> LearntLaw | None:

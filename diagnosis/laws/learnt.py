@@ -56,12 +56,17 @@ class LearntLaw:
     @property
     def is_of_library(self) -> bool:
         """Whether an effect of the library explains the same as well or better."""
-        return self.library is not None and self.score - self.library.score < AS_WELL
+        return self.library_odds < AS_WELL
 
     @property
     def is_behind_library(self) -> bool:
         """Whether an effect of the library explains the same better."""
-        return self.library is not None and self.library.score - self.score > AS_WELL
+        return self.library_odds < -AS_WELL
+
+    @property
+    def library_odds(self) -> float:
+        """Log odds against the best effect of the library; infinite without any."""
+        return np.inf if self.library is None else self.score - self.library.score
 
     @property
     def run_odds(self) -> float:
@@ -92,9 +97,9 @@ class LearntLaw:
                 near.append(rival)
         laws: list[Effect] = [self.law, *(r.law for r in near[: policy.most_members - 1])]
         odds = [0.0, *(max(r.log_odds, 0.0) for r in near[: policy.most_members - 1])]
-        if self.library is not None and self.score - self.library.score < policy.class_odds:
+        if self.library is not None and self.library_odds < policy.class_odds:
             laws.append(self.library.effect)
-            odds.append(self.score - self.library.score)
+            odds.append(self.library_odds)
         shares = np.exp(-np.array(odds))
         return list(zip(laws, (shares / shares.sum()).tolist(), strict=True))
 

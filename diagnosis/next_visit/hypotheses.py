@@ -124,8 +124,8 @@ def undecided(one: LearntLaw) -> list[tuple[Effect, float]]:
     """Rivals of a law that its run has not decided against, with the odds against them."""
     alike = [replace(one.law, carrier=carrier) for carrier in one.alike[:MOST_CARRIERS]]
     found: list[tuple[Effect, float]] = [(law, 0.0) for law in alike]
-    if one.library is not None and one.score - one.library.score < DECIDED:
-        found.append((one.library.effect, one.score - one.library.score))
+    if one.library is not None and one.library_odds < DECIDED:
+        found.append((one.library.effect, one.library_odds))
     near = [rival for rival in one.rivals if rival.log_odds < DECIDED]
     own = one.law.explanation
     seen = {own}

@@ -17,8 +17,8 @@ from scipy.linalg.lapack import dtpmqrt, dtpqrt
 
 from matstd.twin.frames import Array, IntArray
 
-BLOCK = 16
-"""Columns of a QR that are turned together; with 32 it takes a few percent longer."""
+REFLECTED = 16
+"""Columns of a QR whose reflections are made together; with 32 it takes a few percent longer."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,10 +79,19 @@ def solve(X: Array, y: Array) -> Solution:
         return Solution(X, np.eye(X.shape[1]), np.zeros(X.shape[1]), y)
     # below the triangle that the prior is already: two thirds of the time of a QR of both
     prior = np.eye(X.shape[1], order="F")
-    R, V, T, _ = dtpqrt(0, min(BLOCK, len(prior)), prior, X)
+    R, V, T = below(prior, X)
     _, Q, _ = dtpmqrt(0, V, T, prior, np.zeros_like(X, order="F"), overwrite_b=True)
     phi = solve_triangular(R, Q.T @ y, check_finite=False)
     return Solution(np.ascontiguousarray(Q), R, phi, y - X @ phi)
+
+
+def below(R: Array, X: Array) -> tuple[Array, Array, Array]:
+    """QR of rows X below an upper triangle R: its triangle, reflections and their factors.
+
+    LAPACK's `tpqrt`, which takes the zeros of R for what they are.
+    """
+    triangle, V, T, _ = dtpqrt(0, min(REFLECTED, len(R)), R, X)
+    return triangle, V, T
 
 
 @dataclass(frozen=True, eq=False)

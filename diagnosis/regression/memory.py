@@ -11,10 +11,9 @@ from functools import cached_property
 
 import numpy as np
 from scipy.linalg import solve_banded, svd
-from scipy.linalg.lapack import dtpqrt
 from scipy.optimize import minimize_scalar
 
-from matstd.diagnosis.regression.linear import BLOCK
+from matstd.diagnosis.regression.linear import below
 from matstd.diagnosis.regression.noise import PRIOR_DOF
 from matstd.twin.frames import Array, IntArray, Mask
 from matstd.twin.record import Touches
@@ -217,7 +216,7 @@ def _marginal(X: Array, y: Array, log_det: float) -> float:
     # a column of a prior 1e7 times the noise leaves no digit of the others in their inner products
     whole = np.column_stack([X, y])
     nothing = np.zeros((whole.shape[1], whole.shape[1]), order="F")
-    R = dtpqrt(0, min(BLOCK, len(nothing)), nothing, whole)[0]
+    R = below(nothing, whole)[0]
     try:
         U, size, _ = svd(R[:, :-1], False, check_finite=False)
     except np.linalg.LinAlgError:  # on a column that rounding alone left; the slower one does

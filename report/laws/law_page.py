@@ -26,13 +26,13 @@ from matstd.report.laws.law_words import (
     law_sentence,
     library_sentence,
     limits_sentences,
-    looks_like,
     no_law_sentence,
     place_words,
     rival_sentence,
     rivals_sentence,
     variable_words,
 )
+from matstd.report.laws.looks import looks_like
 from matstd.report.laws.run_words import second_run_sentence
 from matstd.report.laws.visit_words import visit_section
 from matstd.report.layout import KeyFigure, LiveView, Page, Picture, Section, Table, write_page
@@ -208,7 +208,7 @@ def _rivals(learning: Learning, one: LearntLaw) -> Section:
         for i, (law, odds) in enumerate(shown[: learning.policy.most_rivals + 1])
     ]
     if one.library is not None and one.library.effect.name in members:
-        name, odds = one.library.effect.name, odds_words(one.score - one.library.score)
+        name, odds = one.library.effect.name, odds_words(one.library_odds)
         rows.append([name, "the library", "", odds, f"{100 * members[name]:.0f} %"])
     columns = ("formula", "carrier", "variables", "odds against it", "share of predictions")
     return Section("Rivals", sentences=[_ALIKE], table=Table(columns, rows, best=[0]), is_part=True)

@@ -15,6 +15,7 @@ from matstd.diagnosis.laws import (
     partial_residual,
     places,
 )
+from matstd.report.laws.looks import looks_like
 from matstd.report.laws.run_words import run_sentence
 from matstd.report.numbers import microns, odds_words, with_uncertainty
 from matstd.twin.laws import Carrier, Driver, Factor, Law, drivers
@@ -76,27 +77,6 @@ _SHAPES = {
 }
 FEW_TOUCHES = 60  # below it a run leaves few degrees of freedom beside geometry and set-ups
 _EDGES = ("x0", "x1", "x2")  # parameters of shapes that are values of the variable
-
-_LOOKS = {
-    ("bump", "linear"): "It looks like a hose or a cable chain, or a worn place of a guide.",
-    ("plateau", "linear"): "It looks like a worn zone of a scale or of a guide.",
-    ("window", "linear"): "It looks like a hose, a stop or a damaged stretch of a scale.",
-    ("step", "time"): "It looks like something that was changed: a stylus, a clamp, a part.",
-    ("square", "time"): "It looks like something that switches: coolant, a pump, a chiller.",
-    ("saw", "time"): "It looks like a controller with two limits: a cooler, a level.",
-    ("sine", "time"): "It looks like a cycle of a cooler or of the room.",
-    ("sine", "linear"): "It looks like a screw, a rack or the interpolation of an encoder; across "
-    "the axis, like the bolts or the rolling elements of a guide.",
-    ("exp", "time"): "It looks like something that relaxes or warms: a clamping, a drive.",
-    ("settling", "time"): "It looks like something that relaxes or warms: a clamping, a drive.",
-    ("log", "time"): "It looks like creep.",
-    ("kink", "linear"): "It looks like a counterweight, a bearing or a stop that begins to carry.",
-    ("kink-before", "linear"): "It looks like a counterweight, a bearing or a stop.",
-    ("kink", "level"): "It looks like a threshold: a thermostat, a gap that closes.",
-    ("play", "level"): "It looks like friction between bodies that expand differently.",
-    ("hysteresis", "level"): "It looks like friction between bodies that expand differently.",
-    ("harmonic", "rotary"): "It looks like cogging, a bearing or the disc of an encoder.",
-}
 
 
 def variable_words(driver: Driver) -> str:
@@ -282,12 +262,6 @@ def _size(learning: Learning, law: Law) -> str:
     return amplitude_words(law, Estimate("amplitude", total, u, found[0].unit))
 
 
-def looks_like(law: Law) -> str:
-    """What a metrologist would look for; empty where nothing is known."""
-    factors = [(f.shape.word, f.driver.nature) for f in law.factors]
-    return next((_LOOKS[f] for f in factors if f in _LOOKS), "")
-
-
 def rival_sentence(one: LearntLaw) -> str:
     """The nearest law of another carrier or other variables, with its odds; empty for none."""
     rival = one.second_choice
@@ -300,7 +274,7 @@ def library_sentence(one: LearntLaw) -> str:
     """How the law compares with the best effect of the library; empty where none is near."""
     if one.library is None:
         return ""
-    name, odds = one.library.effect.name, one.score - one.library.score
+    name, odds = one.library.effect.name, one.library_odds
     if one.is_of_library and not one.is_behind_library:
         return f"The library explains it as well: {name} (odds {odds_words(odds)} for the law)."
     if odds < 0.0:

@@ -52,9 +52,9 @@ def _second_run(second: SecondRun, words: str) -> str:
     if second.learnt != second.without:
         words += f", {microns(second.learnt)} with those that hold for every run"
     if not second.is_clock:
-        words += f", {microns(second.clocked)} with those that belong to the first run"
+        words += f", {microns(second.clocked)} with the laws that belong to the first run"
         hold = "hold here, too" if second.is_clock_kept else "do not hold here"
-        return f"{words}, which {hold}."
+        return f"{words}. They {hold}."
     words += f", {microns(second.clocked)} if what the run did not record kept its times"
     if second.is_clock_kept:
         return f"{words}: it did. What drives it begins with the run or its program."

@@ -1,6 +1,7 @@
 """What is said beside a law: of the touches left out, of a second run, of the library."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,7 +11,8 @@ from matstd import learn
 from matstd.api.learning import LearntLaws
 from matstd.api.saved import extended
 from matstd.diagnosis.fit import fit_run
-from matstd.diagnosis.laws import SecondRun
+from matstd.diagnosis.laws import SecondRun, places
+from matstd.diagnosis.laws.beginning import Beginning
 from matstd.diagnosis.laws.learn import _have_carrier
 from matstd.diagnosis.laws.library import LibraryEffect
 from matstd.diagnosis.laws.screening import field_of
@@ -18,7 +20,9 @@ from matstd.diagnosis.laws.search import _is_seen
 from matstd.report.laws import second_run_sentence
 from matstd.report.laws.law_page import law_sections
 from matstd.report.laws.law_words import library_sentence
+from matstd.report.laws.looks import looks_like
 from matstd.twin.errors import BadArgument
+from matstd.twin.files import read_machine
 from matstd.twin.library import ordinary_model, parse_effect
 from matstd.twin.units import UM
 
@@ -34,11 +38,11 @@ from matstd.twin.units import UM
         ),
         (
             SecondRun(90, 0.9 * UM, 0.9 * UM, 0.6 * UM, is_clock=False),
-            "0.60 µm with those that belong to the first run, which hold here, too.",
+            "0.60 µm with the laws that belong to the first run. They hold here, too.",
         ),
         (
             SecondRun(90, 0.9 * UM, 0.9 * UM, 1.1 * UM, is_clock=False, gross=(1, 1)),
-            "which do not hold here. Left out as gross errors: 1 touch.",
+            "They do not hold here. Left out as gross errors: 1 touch.",
         ),
     ],
 )
@@ -112,3 +116,33 @@ def test_accidents_have_no_carrier_in_common(stylus) -> None:
         found.append(_have_carrier(replace(fit.gross, score=score), rows, field))
     assert all(found[1::2])
     assert sum(found[::2]) <= 7
+
+
+def test_a_wave_that_jumps_is_as_uncertain_as_its_touches_leave_it(stylus) -> None:
+    """Far above the noise every period and phase is as good that gives all touches their sign."""
+    found = stylus[2]
+    run = found.before.run
+    x, period, phase = run.touches.since_start, 2600.0, 0.7
+
+    def signs(period, phase):
+        return np.where(np.mod(x / period + phase / (2.0 * np.pi), 1.0) < 0.5, 1.0, -1.0)
+
+    start = Beginning.of_run(replace(run, deviation=run.deviation + 0.1 * signs(period, phase)))
+    law = parse_effect("law(bias,square time)", run.touches.chain).tuned(period, phase)
+    one = replace(found.laws[0], law=law)
+    learnt = replace(found, beginning=start, after=start.fitted([law]), laws=(one,))
+    rng = np.random.default_rng(2)
+    away = rng.uniform(-1.0, 1.0, (20000, 2)) * [60.0, 0.3]
+    same = [np.array_equal(signs(period + p, phase + f), signs(period, phase)) for p, f in away]
+    expected = np.sqrt((away[same] ** 2).mean(axis=0))
+    stated = [e.u for e in places(learnt, law)]
+    assert np.count_nonzero(same) > 50
+    np.testing.assert_allclose(stated, expected, rtol=0.3)
+
+
+def test_what_turns_with_the_contact_looks_like_the_form_of_the_standard() -> None:
+    """Lobes of a ball on a table that turns; of a carriage alone it is cogging."""
+    chain = read_machine(Path(__file__).parents[2] / "examples" / "hsm600u-machine.toml")
+    lobes = parse_effect("law(shift,harmonic C,sine azimuth)", chain)
+    assert "form of the standard" in looks_like(lobes)
+    assert "cogging" in looks_like(parse_effect("law(EXX,harmonic C,sine X)", chain))

@@ -9,6 +9,8 @@ import pytest
 from unchanged import drawn
 
 from matstd.diagnosis.fit import fit_run
+from matstd.diagnosis.laws import places
+from matstd.diagnosis.laws.beginning import Beginning
 from matstd.report.laws import effect_text, law_sentence, short_words
 from matstd.report.laws.law_page import draw_law
 from matstd.report.laws.law_words import formula_words
@@ -46,7 +48,8 @@ def learnt(measured, name, at):
     tangent = fit_run(
         run, model, free_inner=fit.theta[: sum(len(e.parameters) for e in model.effects)]
     )
-    return replace(found, after=fit, tangent=tangent, laws=(one,)), run, law
+    start = Beginning.of_run(run)
+    return replace(found, beginning=start, after=fit, tangent=tangent, laws=(one,)), run, law
 
 
 def loaded(text, chain):
@@ -165,9 +168,9 @@ def test_a_surface_is_drawn_as_a_map_and_a_reversal_from_one_side_to_the_other(
     ("name", "at", "formula", "words"),
     [
         ("law(EXX,saw X)", (37.0, 0.0), "EXX = a (2 frac(X/period + phase/(2 pi)) - 1)",
-         r"a saw-tooth of .* µm over X \(period 37.0 mm, phase 0 °, without uncertainty\)\.$"),
+         r"a saw-tooth of .* µm over X \(period 37.\d+ ± 0.\d+ mm, phase 0\.?\d* ± \d.* °\)\.$"),
         ("law(EXX,square X)", (80.0, 0.5), "EXX = a sgn sin(2 pi X/period + phase)",
-         r"a square wave of .* µm over X \(period 80.0 mm, phase 28.6 °, without uncertainty\)\.$"),
+         r"a square wave of .* µm over X \(period 80.\d+ ± 0.\d+ mm, phase 28\.?\d* ± \d.* °\)\.$"),
         ("law(EXX,sine X)", (80.0,), "EXX = a sin(2 pi X/period) + b cos(2 pi X/period)",
          r"a sine of .* µm over X \(period 80.\d+ ± 0.\d\d mm\)\.$"),
         ("law(EZX,bump-after time)", (2000.0, 600.0),
@@ -217,12 +220,12 @@ def test_a_line_through_zero_and_one_with_a_constant_have_words_of_their_own(mea
     assert short_words(one) != short_words(other)
 
 
-def test_a_phase_is_scanned_in_degrees_about_the_one_found(measured) -> None:
-    """A wave of a phase near zero can be refitted: ten degrees to either side, as in the model."""
-    learning, run, _ = learnt(measured, "law(EXX,saw X)", (37.0, -0.03))
+def test_a_phase_is_scanned_about_the_one_found_by_three_uncertainties(measured) -> None:
+    """A wave of a phase near zero can be refitted: its scan is no share of its value."""
+    learning, run, law = learnt(measured, "law(EXX,saw X)", (37.0, -0.03))
     effect = loaded(effect_text(learning, "run.csv"), run.touches.chain)
     (phase,) = [i for i in effect.inner(run.touches) if i.name == "phase"]
-    np.testing.assert_allclose(
-        phase.grid, np.radians(np.linspace(-10.0, 10.0, 9)) - 0.03, atol=1e-3
-    )
+    (u,) = [e.u for e in places(learning, law) if e.name == "phase"]
+    grid = -0.03 + 3.0 * u * np.linspace(-1.0, 1.0, 9)
+    np.testing.assert_allclose(phase.grid, grid, atol=0.1 * u)
     assert phase.unit == "rad"

@@ -271,7 +271,7 @@ class Law:
     def units(self) -> tuple[str, ...]:
         """Base unit of every parameter of the shapes; "1" of a number."""
         return tuple(
-            "1" if _is_number(name, f.driver) else "rad" if name == "phase" else f.driver.unit
+            "rad" if name == "phase" else "1" if _is_number(name, f.driver) else f.driver.unit
             for f in self.factors
             for name in f.shape.places
         )
