@@ -294,7 +294,7 @@ def _place(
         found = run.touches.setups[0]
         return found, list(located_lines(believed, found))
     searches = [part for part, is_one in zip(parts, is_search, strict=True) if is_one]
-    searches, remarks = checked_parts(searches, standard)
+    searches, remarks = checked_parts(searches, standard, chain)
     part = searches[-1]
     balls = ball_centres(part, chain, dialect)
     rng = np.random.default_rng(SEED)

@@ -69,7 +69,7 @@ def evaluate(
         NotEnoughData: No touch at all.
     """
     measured = [part for part in parts if part.is_measuring]
-    parts, remarks = checked_parts(distinct_parts(measured), standard)
+    parts, remarks = checked_parts(distinct_parts(measured), standard, chain)
     if not sum(len(part.number) for part in parts):
         raise NotEnoughData("the logs hold no touch")
     _check_calibrations(parts)

@@ -13,6 +13,7 @@ from matstd.probe_paths.campaign.stamps import check_log_stamp
 from matstd.probe_paths.control import UNDATED, LogPart
 from matstd.twin.errors import BadFile
 from matstd.twin.frames import Array
+from matstd.twin.machine import Chain
 from matstd.twin.rows import picked
 from matstd.twin.units import NM
 
@@ -72,13 +73,15 @@ def _check_alike(one: LogPart, other: LogPart) -> None:
         raise BadFile(other.path, other.line[k[row]], found, expected)
 
 
-def checked_parts(parts: Sequence[LogPart], standard: Standard) -> tuple[list[LogPart], list[str]]:
+def checked_parts(
+    parts: Sequence[LogPart], standard: Standard, chain: Chain
+) -> tuple[list[LogPart], list[str]]:
     """Parts without touches of features that the standard lacks, and remarks on all of them.
 
     Raises:
         DesignError: A log of another standard or another design of it.
-        BadFile: Nothing but such touches in a part, or numbers that cannot be right
-            (`check_numbers`).
+        BadFile: A log of another machine, nothing but such touches in a part, or numbers that
+            cannot be right (`check_numbers`).
     """
     check_numbers(parts)
     kept: list[LogPart] = []
@@ -86,6 +89,7 @@ def checked_parts(parts: Sequence[LogPart], standard: Standard) -> tuple[list[Lo
     count = len(standard.features)
     for part in parts:
         check_log_stamp(part.path, part.heading, standard)
+        part.heading.check_machine(chain, part.path)
         good = (part.feature >= 1) & (part.feature <= count)
         if len(good) and not np.any(good):
             found, expected = (

@@ -114,6 +114,7 @@ def interpret(
     head, features = heading(blocks, path)
     frame = ProgramFrame(chain, _probe(head, probe, path))
     check_axes(blocks, frame.letters, head, path)
+    head.check_machine(chain, path)
     stated = promise(blocks, head, path)
     runner = Runner(blocks, places, frame, path, name, masks, head)
     axes, language = len(chain.axes), language_of(path)

@@ -97,6 +97,7 @@ class Writer:
             workshop=plan.options.workshop,
             serial=stated_serial(plan.standard.serial),
             calibration=calibration_hash(own),
+            arrangement=plan.chain.arrangement,
             ball=plan.options.ball,
             is_tilted=self.tilting is not None,
             sensors=() if is_first else dialect.sensors,

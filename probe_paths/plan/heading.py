@@ -19,6 +19,7 @@ from matstd.artefact.reach import TABLE, DatumBall, Solid, Workshop
 from matstd.artefact.tool import Probe
 from matstd.twin.errors import BadFile, DesignError
 from matstd.twin.frames import Array, fixed_xyz, fixed_xyz_angles, pose
+from matstd.twin.machine import Chain
 from matstd.twin.record import Setup
 from matstd.twin.units import DEG
 
@@ -28,7 +29,7 @@ _NUMBER = r"([+-]\d+\.\d+)"
 _ORIGIN = re.compile(rf"ORIGIN X{_NUMBER} Y{_NUMBER} Z{_NUMBER}")
 _TURNED = re.compile(rf"TURNED A{_NUMBER} B{_NUMBER} C{_NUMBER}")
 _PROBE = re.compile(rf"PROBE RADIUS {_NUMBER} LENGTH TO BALL CENTRE {_NUMBER}")
-_STATED = re.compile(r"(SERIAL|CALIBRATION|WORKSHOP|FRAME) ([A-Za-z0-9_.+-]{1,24})")
+_STATED = re.compile(r"(SERIAL|CALIBRATION|MACHINE|WORKSHOP|FRAME) ([A-Za-z0-9_.+-]{1,24})")
 _TILTED = "SPATIAL"
 _STACK = re.compile(rf"STACK TO{_NUMBER} R{_NUMBER}")
 _NOSE = re.compile(rf"NOSE R{_NUMBER}")
@@ -75,6 +76,7 @@ class Heading:
     serial: str = ""
     # hash of the faces and places of the standard; empty in logs of earlier programs
     calibration: str = ""
+    arrangement: str = ""  # axes of the machine, `C-B-X-F-Y-Z`; empty in logs of earlier programs
     stated: str = ""  # hash of probe and workshop; empty in logs of earlier programs
     is_tilted: bool = False  # coordinates are those of planes that are tilted with the table
     sensors: tuple[Sensor, ...] = ()
@@ -97,6 +99,20 @@ class Heading:
         hashed = f" ({self.calibration})" if self.calibration else ""
         return f"{self.standard} {self.serial}".strip() + hashed
 
+    def check_machine(self, chain: Chain, path: str | Path) -> None:
+        """Refuse a machine whose axes stand in another order; raises BadFile.
+
+        Places and travels may differ: a corrected description is of the same machine.
+        """
+        if self.arrangement and self.arrangement != chain.arrangement:
+            raise BadFile(
+                path,
+                "MACHINE",
+                f"axes {self.arrangement} from workpiece to tool",
+                f"{chain.arrangement}, those of '{chain.name}': the program was written for "
+                "another machine",
+            )
+
     @property
     def log_lines(self) -> list[str]:
         """What the log repeats, four at least; numbers with six decimals, mm and degrees."""
@@ -109,6 +125,7 @@ class Heading:
         named = {
             "SERIAL": self.serial,
             "CALIBRATION": self.calibration,
+            "MACHINE": self.arrangement,
             "WORKSHOP": self.workshop_hash,
             "FRAME": _TILTED if self.is_tilted else "",
         }
@@ -243,6 +260,7 @@ def parse_heading(lines: Sequence[tuple[int, str]], path: str | Path) -> tuple[H
         probe=Probe(float(radius), float(length)),
         serial=stated.get("SERIAL", ""),
         calibration=stated.get("CALIBRATION", ""),
+        arrangement=stated.get("MACHINE", ""),
         stated=stated.get("WORKSHOP", ""),
         is_tilted="FRAME" in stated,
         sensors=sensors,

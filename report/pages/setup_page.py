@@ -96,9 +96,9 @@ def write_setup_page(
         lead=(
             f"{plural(len(programs.programs), 'program')}, {plural(len(plan.visits), 'visit')}"
             f"{' of table poses' * bool(plan.chain.rotary_axes)}, about "
-            f"{programs.duration / MINUTE:.0f} min. Calibration "
-            f"`{calibration_hash(standard)}`, workshop `{workshop}`, as in the head of every "
-            "program and log."
+            f"{programs.duration / MINUTE:.0f} min. Machine "
+            f"`{plan.chain.arrangement}`, calibration `{calibration_hash(standard)}`, workshop "
+            f"`{workshop}`, as in the head of every program and log."
         ),
         means="The programs move as drawn only if standard, probe and preset stand as stated "
         "here; the first program finds where the standard really is.",

@@ -27,7 +27,7 @@ POSES = ((0.0, 0.0), (0.0, 120.0), (-30.0, 60.0), (-60.0, 170.0), (20.0, -100.0)
 """B and C of the table poses, degrees."""
 
 
-def machine() -> Chain:
+def machine(notation: str = "[w C' B' X' f Y Z (C1) t]") -> Chain:
     """A trunnion-table machine with round numbers."""
     axes = {
         "X": Axis((-400.0, 400.0)),
@@ -36,7 +36,7 @@ def machine() -> Chain:
         "B": Axis((-110.0 * DEG, 30.0 * DEG), (0.0, 0.0, -420.0)),
         "C": Axis((-360.0 * DEG, 360.0 * DEG), (0.0, 0.0, 0.0)),
     }
-    return make_chain("trunnion", "[w C' B' X' f Y Z (C1) t]", axes, (0.0, 0.0, -500.0))
+    return make_chain("trunnion", notation, axes, (0.0, 0.0, -500.0))
 
 
 def machine_text() -> str:

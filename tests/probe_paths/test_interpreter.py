@@ -290,11 +290,18 @@ def test_a_test_of_the_control_that_is_weakened_is_found(label, how, first, prog
         as_read(programs, chain, text=renumbered(lines))
 
 
+def test_a_program_for_the_same_letters_in_another_order_is_refused(first, programs, golden):
+    """Its blocks can all run there: the ball would only meet something else."""
+    as_read(programs, golden.machine("[w C' B' X' f Z Y (C1) t]"), text=first.text)
+    with pytest.raises(BadFile, match=r"MACHINE: .* C-B-X-F-Y-Z .* expected C-X-B-F-Y-Z, those of"):
+        as_read(programs, golden.machine("[w C' X' B' f Y Z (C1) t]"), text=first.text)
+
+
 def test_raw_faults_of_the_file_are_found(first, programs, chain):
     text = first.text.encode("ascii")
     faults = {
         b"": "a program that begins with BEGIN PGM",
-        text[: len(text) // 2]: "cut off",
+        text[: len(text) // 3]: "cut off",
         text.replace(b"\r\n", b"\n", 3): "CRLF",
         text.replace(b"\r\n7 ", b"\r\n8 ", 1): "block number 8, expected 7",
         text.replace(b"\r\n7 ", b"\r\n", 1): "everywhere or nowhere",

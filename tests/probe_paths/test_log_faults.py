@@ -20,7 +20,7 @@ from matstd.twin.frames import pose
 from matstd.twin.units import NM, UM
 
 U = 1.0 * UM
-HEAD = 13
+HEAD = 14
 """Lines of a head, from MATSTD LOG 1 to EX EY TL."""
 TOUCH = 5
 """Lines of a touch on a machine with two rotary axes."""
@@ -154,14 +154,14 @@ FAULTS = {
     "lines before the head": (before(0, "SOME OTHER PROGRAM"), set(), "before the head"),
     "the first line lost": (without(0), set(), ""),
     "the first line garbled": (instead(0, "MATXTD L0G 1"), set(), "before the head"),
-    "no date": (without(8), set(), "without a date"),
-    "month 13": (edited(8, "-  1-", "- 13-"), set(), "without a date"),
-    "no time in the head": (without(9), set(), "the first touch's is taken"),
-    "hour 25 in the head": (edited(9, "T  8:", "T 25:"), set(), "the first touch's is taken"),
-    "tool and preset lost": (without(10), set(), "it is left out"),
-    "tool garbled": (instead(10, "TOOL ????"), set(), "it is left out"),
-    "offsets lost": (without(12), set(), "it is left out"),
-    "offsets garbled": (instead(12, "EX   0.0"), set(), "it is left out"),
+    "no date": (without(9), set(), "without a date"),
+    "month 13": (edited(9, "-  1-", "- 13-"), set(), "without a date"),
+    "no time in the head": (without(10), set(), "the first touch's is taken"),
+    "hour 25 in the head": (edited(10, "T  8:", "T 25:"), set(), "the first touch's is taken"),
+    "tool and preset lost": (without(11), set(), "it is left out"),
+    "tool garbled": (instead(11, "TOOL ????"), set(), "it is left out"),
+    "offsets lost": (without(13), set(), "it is left out"),
+    "offsets garbled": (instead(13, "EX   0.0"), set(), "it is left out"),
     "hour 25": (edited(touch_line(8, 4), "T  8:", "T 25:"), {8}, "touch that begins"),
     "the clock an hour back": (
         at_hour(7, touch_line(12)),
@@ -206,9 +206,9 @@ HEAD_FAULTS = {
     "no origin": (instead(3, "ORIGIN X+1.0"), "ORIGIN X"),
     "no rotation": (without(4), "TURNED A"),
     "no probe": (instead(5, "PROBE"), "PROBE RADIUS"),
-    "no calibration": (without(11), "R <number> L <number>"),
-    "calibration garbled": (instead(11, "R 3.0"), "R <number> L <number>"),
-    "the head alone, cut": (lambda lines: lines[:11], "the end of the part"),
+    "no calibration": (without(12), "R <number> L <number>"),
+    "calibration garbled": (instead(12, "R 3.0"), "R <number> L <number>"),
+    "the head alone, cut": (lambda lines: lines[:12], "the end of the part"),
 }
 
 
@@ -334,6 +334,17 @@ def test_two_tools_for_one_probe_are_refused_whatever_probe_came_first(lines, ch
         check_numbers([first, long, replace(long, tool=32.0)])
 
 
+def test_the_log_of_a_machine_with_its_axes_in_another_order_is_refused(lines, small, golden):
+    parts = read_log("L", golden.machine().rotary_axes, "\n".join(lines) + "\n")
+    found = "MACHINE: found axes C-B-X-F-Y-Z from workpiece to tool, expected B-C-X-F-Y-Z"
+    with pytest.raises(BadFile, match=found):
+        evaluate(parts, small, golden.machine("[w B' C' X' f Y Z (C1) t]"), U)
+    corrected = golden.machine("[w C' B' X' f Z Y (C1) t]")
+    assert len(evaluate(parts, small, corrected, U)) == 24
+    earlier = [replace(parts[0], heading=replace(parts[0].heading, arrangement=""))]
+    assert len(evaluate(earlier, small, corrected, U)) == 24
+
+
 def test_another_serial_number_is_refused(lines, small, chain):
     numbered = before(8, "SERIAL 007")(list(lines))
     parts = read_log("L", chain.rotary_axes, "\n".join(numbered) + "\n")
@@ -360,7 +371,7 @@ def test_a_sphere_beside_its_calibrated_place_is_said(golden, small, chain):
 
 
 def test_a_run_without_a_date_begins_long_ago(lines, chain):
-    (part,) = read_log("L", chain.rotary_axes, "\n".join(without(8)(list(lines))) + "\n")
+    (part,) = read_log("L", chain.rotary_axes, "\n".join(without(9)(list(lines))) + "\n")
     assert part.begin.date() == UNDATED.date()
     assert (part.begin.hour, part.begin.minute) == (8, 0)
 

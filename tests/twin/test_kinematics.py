@@ -295,3 +295,21 @@ def test_joints_are_the_rotary_axes_of_an_open_chain(notation, joints, turns):
     for symbol in chain.symbols:
         if symbol.link not in "wt":
             assert error_class(chain, symbol).startswith("arm_") == (symbol.link in joints)
+
+
+@pytest.mark.parametrize(
+    ("notation", "arrangement"),
+    [
+        ("[w C' B' X' f Y Z (C1) t]", "C-B-X-F-Y-Z"),
+        ("[w B' C' X' f Y Z t]", "B-C-X-F-Y-Z"),  # the tilting axis on the table
+        ("[w C' B' X' f Z Y t]", "C-B-X-F-Y-Z"),  # slides of one side commute
+        ("[w C' X' B' f Y Z t]", "C-X-B-F-Y-Z"),
+        ("[w C' f X B Z Y A t]", "C-F-X-B-Y-Z-A"),
+        ("[w Y' X' f (C1) Z t]", "X-Y-F-Z"),
+        ("[w f (C1) t]", "F"),
+    ],
+)
+def test_the_arrangement_is_the_order_that_moves_the_tool(notation, arrangement):
+    names = [name.strip("'") for name in notation.strip("[]").split() if name not in "wft"]
+    axes = {name: Axis((-1.0, 1.0)) for name in names if "(" not in name}
+    assert make_chain("a", notation, axes).arrangement == arrangement

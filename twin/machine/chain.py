@@ -5,6 +5,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from itertools import groupby
 from pathlib import Path
 
 import numpy as np
@@ -156,6 +157,20 @@ class Chain(Displayed):
     def joints(self) -> tuple[str, ...]:
         """Joints of an open chain, from the foundation outwards; none on a machine tool."""
         return tuple(link.name for link in self.links if link.is_joint)
+
+    @cached_property
+    def arrangement(self) -> str:
+        """Order of the programmed axes from workpiece to tool, F the foundation: `C-B-X-F-Y-Z`.
+
+        Neighbouring linear axes of one side move the tool alike in any order, so they are sorted.
+        """
+        programmed = [ln for ln in self.links if ln.kind != "fixed" and ln.programmed]
+        order: list[str] = []
+        for (_, kind), group in groupby(programmed, lambda ln: (ln.carries_workpiece, ln.kind)):
+            names = [link.name for link in group]
+            order += sorted(names) if kind == "linear" else names
+        order.insert(sum(link.carries_workpiece for link in programmed), "F")
+        return "-".join(order)
 
     @property
     def turns_workpiece(self) -> bool:
