@@ -26,7 +26,12 @@ from matstd.diagnosis.geometry.changes import (
 from matstd.diagnosis.geometry.corrections import Correction, corrections
 from matstd.diagnosis.geometry.functionals import functionals
 from matstd.diagnosis.geometry.model_choice import with_model_choice
-from matstd.diagnosis.geometry.quantities import Functional, Quantity, geometric_effects
+from matstd.diagnosis.geometry.quantities import (
+    Functional,
+    Quantity,
+    geometric_effects,
+    is_geometry,
+)
 from matstd.diagnosis.geometry.rivals import FoundNumber
 from matstd.diagnosis.geometry.rows import Estimate, GeometryRow, is_clear
 from matstd.diagnosis.policy import POLICY
@@ -188,7 +193,16 @@ def _row(
         steps=tuple(steps),
         usual=usual,
         added_up=of_all if usual else 0.0,
+        by_laws=_by_laws(fit, one, states[-1]),
     )
+
+
+def _by_laws(fit: Fit, one: Functional, state: Array) -> Estimate | None:
+    """The part of a quantity that is not of the ordinary errors, such as a learnt law."""
+    kinds = [is_geometry(effect) for effect, _ in fit.model.parameters]
+    if one.curve is not None or all(kinds):
+        return None
+    return _of(fit, np.where(kinds, 0.0, one.weights @ state))
 
 
 def _is_size(estimate: Estimate, expected: float) -> bool:

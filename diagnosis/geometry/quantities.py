@@ -8,7 +8,6 @@ import numpy as np
 
 from matstd.diagnosis.fit import Fit
 from matstd.twin.frames import Array
-from matstd.twin.laws import law_of
 from matstd.twin.model import Effect, traits
 
 
@@ -63,18 +62,14 @@ def is_geometry(effect: Effect) -> bool:
 
 
 def is_of_readings(effect: Effect) -> bool:
-    """Whether an effect is a part of such an error: geometry, a table, a law of its own axis.
+    """Whether an effect is a part of such an error: geometry, a table, a law of its own reading.
 
     A kink that a parabola straightens elsewhere is no error by itself, and neither is the parabola.
     """
     if is_geometry(effect):
         return True
-    law = law_of(effect)
-    if law is not None:
-        symbol = law.carrier.symbol
-        return symbol is not None and {f.driver.name for f in law.factors} == {symbol.link}
     own = traits(effect)
-    return own.is_table and own.reversal is None
+    return own.is_of_reading or (own.is_table and own.reversal is None)
 
 
 def geometric_effects(fit: Fit) -> Iterator[tuple[int, Effect]]:

@@ -47,6 +47,8 @@ class GeometryRow:
     # for such a line: standard deviation before the run of what all errors of the machine add up to
     # there. Angles of a linear axis far from its table bend its way
     added_up: float = 0.0
+    # of the estimate, what tables and learnt laws contribute; None of a peak to valley, and without
+    by_laws: Estimate | None = None
     # what the choice of the model contributes to the uncertainty of the estimate
     u_model: float = 0.0
 

@@ -36,6 +36,8 @@ MIN_SIGNIFICANCE = 2.0
 """Standard uncertainties from which on a quantity is worth a line on the console."""
 MAX_REPORTED = 8  # quantities reported on the console
 
+PART = "of this, laws or tables over a reading contribute {}"
+
 
 @dataclass(frozen=True, slots=True)
 class GeometryLine:
@@ -139,6 +141,11 @@ def _line(row: GeometryRow) -> GeometryLine:
     # no arm at all
     in_um = at_ends.removesuffix("µm")
     is_same = row.unit == "mm" or not row.lever or in_um == value_words(row).removesuffix("µrad")
+    part = row.by_laws
+    if part is not None and abs(part.value) > row.estimate.u:
+        notes.append(
+            f"of this {_value(part.value, part.u, factor, unit)} by laws or tables over a reading"
+        )
     if row.change is not None and not row.has_changed:
         difference = _value(row.change.value, row.change.u, factor, unit)
         notes.append(f"no change beyond chance ({difference})")

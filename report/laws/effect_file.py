@@ -36,7 +36,7 @@ CLASS = '''
 class {name}(Declared):
     """{summary}"""
 {fields}
-    kind{acts} = "{kind}"{entry}
+    kind{acts} = "{kind}"{entry}{part}
     parameters = {parameters}
 
     def {method}(self, touches):
@@ -55,6 +55,10 @@ class {name}(Declared):
 FORM = """
 The form without a formula is that of the run and is not fitted again; its uncertainty is in
 model.toml."""
+
+OF_READING = (
+    "\n    is_of_reading = True  # it is a part of {}, which the geometry reports as a whole"
+)
 
 OF_ITS_RUN = '    belongs_to="run",  # its driver was not recorded: other runs need not repeat it\n'
 
@@ -104,6 +108,7 @@ def _class(learning: Learning, law: Law, kind: str, run: str) -> str:
         acts=", acts_on" if is_entry else "",
         kind=kind,
         entry=entry,
+        part=OF_READING.format(law.carrier.name) if law.is_of_reading else "",
         parameters=_tuple([_parameter(p) for p in _parameters(learning, law)], 4),
         method="amounts" if is_entry else "terms",
         body=_body(learning, law, estimates, is_entry),

@@ -1,6 +1,6 @@
 """Sizes that are physical quantities within the run, against numbers from no part of the fit."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
@@ -10,7 +10,7 @@ from matstd.diagnosis.fit import Prior, Role, fit_run, reported
 from matstd.diagnosis.geometry import Quantity, geometry_rows, learnt_geometry
 from matstd.twin.library import ordinary_model, parse_effect
 from matstd.twin.machine import make_chain
-from matstd.twin.model import Model
+from matstd.twin.model import Declared, Model, Parameter
 from matstd.twin.record import Instrument, Run, Touches, at_poses
 from matstd.twin.units import MINUTE, UM, URAD
 
@@ -50,6 +50,37 @@ def test_squareness_is_that_of_the_affine_field_where_it_was_probed(seed: int) -
     found = rows["EC0Y"].estimate
     assert abs(found.value - affine_squareness(true, theta, t)) < 3.0 * found.u
     assert found.u < 10.0 * URAD
+
+
+@dataclass(frozen=True)
+class Ramp(Declared):
+    """What pushes the slide beyond a reading of X."""
+
+    kind, acts_on = "ramp", "EYX"
+    parameters = (Parameter("amplitude", "mm", 10 * UM),)
+    is_of_reading: bool
+
+    def amounts(self, touches: Touches) -> tuple[np.ndarray]:
+        return (np.clip((touches.reading("X") - 60.0) / 50.0, 0.0, 1.0),)
+
+
+@pytest.mark.parametrize("is_part", [True, False])
+def test_a_function_of_the_reading_is_a_part_of_the_squareness(is_part: bool) -> None:
+    """It turns the straight line of X, so the whole is reported, and what the ramp adds to it."""
+    rng = np.random.default_rng(7)
+    t, ramp = in_a_corner(7), Ramp(is_part)
+    ordinary = ordinary_model(t.chain)
+    model = Model(t.chain, (*ordinary.effects, ramp))
+    theta = np.concatenate([rng.normal(0.0, 0.3 * ordinary.prior_sd), [9.0 * UM]])
+    run = Run(t, model.deviation(t, theta) + rng.normal(0.0, U, len(t)), np.full(len(t), U))
+    (row,) = (r for r in geometry_rows(fit_run(run, model)) if r.symbol == "EC0Y")
+    part = affine_squareness(Model(t.chain, (ramp,)), theta[-1:], t)
+    whole = affine_squareness(model, theta, t)
+    assert abs(part) > 20.0 * URAD
+    expected = whole if is_part else whole - part
+    assert abs(row.estimate.value - expected) < 3.0 * row.estimate.u < 0.5 * abs(part)
+    assert row.by_laws is not None
+    assert abs(row.by_laws.value - is_part * part) <= 3.0 * row.by_laws.u < 0.5 * abs(part)
 
 
 def test_what_the_choice_of_the_model_adds_is_part_of_the_uncertainty() -> None:

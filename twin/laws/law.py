@@ -118,6 +118,12 @@ class Law:
         return self.carrier.symbol
 
     @property
+    def is_of_reading(self) -> bool:
+        """Whether it is a part of a component error: a function of the reading of its own axis."""
+        symbol = self.symbol
+        return symbol is not None and {driver.name for driver in self.drivers} == {symbol.link}
+
+    @property
     def is_curve_alone(self) -> bool:
         """Whether it has no formula."""
         return any(f.shape.word in FREE_FORMS for f in self.factors)

@@ -35,6 +35,8 @@ class Traits:
     is_ordinary: bool = False
     # for an ordinary component error: constant, linear, parabolic, sinusoidal
     distribution: str = ""
+    # whether it is a part of a component error: a function of the reading of that axis alone
+    is_of_reading: bool = False
     # whether its parameters are coefficients of one curve over a reading, which is reported from
     # peak to valley
     is_curve: bool = False
