@@ -100,6 +100,9 @@ class TableTable(Table):
 class BodyTable(Table):
     """`[[workshop.bodies]]`: clamp, fixture or cover, in the frame of the table's face.
 
+    Its z points out of the face. Its x and y are those of the table where the face looks along z,
+    z and x of the table where it looks along y, y and z where it looks along x; y is reversed
+    where it looks the opposite way.
     With `setup` it stands there only in that set-up.
     """
 

@@ -44,11 +44,13 @@ from matstd.twin.units import UM
 
 @dataclass(frozen=True, eq=False)
 class Acceptance:
-    """The place where a table moves the tool point most, rotary axes as at the datum.
+    """The place on a line through the datum where a table moves the tool point most.
 
-    An indicator is zeroed at the datum and read at this place against a gauge that is straight.
+    An indicator is zeroed at the datum, one linear axis is moved, and the indicator is read again:
+    a straightedge or a gauge block shows it, and the operator sees the whole way.
     """
 
+    axis: str  # that is moved from the datum
     q: Array  # readings, (A,)
     without: Array  # deviation of the tool point relative to the datum without the table, (3,), mm
     with_table: Array  # the same with it
@@ -63,10 +65,13 @@ def acceptance(
 
     Args:
         datum: Pose to which everything refers.
-        q: Poses of the workspace, (N, A): the place is among them but for the rotary axes.
+        q: Poses of the workspace, (N, A): the axis is moved to a reading of one of them.
     """
-    is_rotary = np.array([errors.chain.link(a).kind == "rotary" for a in errors.chain.axes])
-    q = np.where(is_rotary, datum.q, q)
+    chain, count = errors.chain, len(q)
+    lines = np.tile(datum.q, (len(chain.linear_axes), count, 1))
+    for line, k in zip(lines, chain.linear_columns, strict=True):
+        line[:, k] = q[:, k]
+    q = lines.reshape(-1, len(datum.q))
     candidates = errors.touches(q, datum.length)
     best = int(np.argmax(np.abs(corrects(candidates)).sum(axis=1)))
     at, there = errors.touches(q[[best]], datum.length), datum.touches(errors)
@@ -78,6 +83,7 @@ def acceptance(
         shown.append(moved[0])
     spread = relative_columns(errors, at, datum)[0] @ errors.root
     return Acceptance(
+        axis=chain.linear_axes[best // count],
         q=q[best],
         without=shown[0],
         with_table=shown[1],

@@ -113,8 +113,9 @@ class Companions:
     # touches on one ball, before the programs and after them; None where there can be none
     ball: ProgramSet | None = None
     no_ball: str = ""
-    # one touch that a control is tried with; None where there is none
+    # one touch that a control is tried with; None where there can be none, or none is needed
     first: ProgramSet | None = None
+    no_first: str = ""
 
     def write(self, folder: Path) -> None:
         """Write programs and masks into a folder."""
@@ -135,13 +136,14 @@ def companions(
     made = Companions(dry_run=dry_run, raised=raised, spread=SPREADS[-1])
     is_beside = plan.options.workshop.ball is not None
     try:
-        own = plan_ball(plan)
-        ball = plan_ball(plan, is_beside) if is_beside else own
-        made = replace(made, ball=make_ball(ball, dialect, feeds))
-        if dialect.language == "klartext" and not is_further:
-            made = replace(made, first=make_first(own, dialect, feeds))
+        made = replace(made, ball=make_ball(plan_ball(plan, is_beside), dialect, feeds))
     except NotReachable as error:
         made = replace(made, no_ball=str(error))
+    if dialect.language == "klartext" and not is_further:
+        try:
+            made = replace(made, first=make_first(plan_ball(plan), dialect, feeds))
+        except NotReachable as error:
+            made = replace(made, no_first=str(error))
     if is_further:
         return replace(made, no_search="the first probe of this set-up has found it")
     # the widest spread comes first, a narrower one where it allows no search

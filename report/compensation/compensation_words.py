@@ -50,6 +50,8 @@ _TITLES = {
     "heidenhain": "iTNC 530 positioning tables (.COM)",
 }
 
+SMALLEST_OF_TOOL = 0.1 * UM
+"""Uncertainty of the probe's place in the spindle from which it is stated, rms over a workspace."""
 _GROWN = 1.01  # times an error of which more remains than there was, beyond rounding
 MAX_NAMED_ERRORS = 5  # errors that a control cannot represent, named on the console
 
@@ -69,6 +71,11 @@ def result_sentence(result: Result) -> str:
         numbers = (result.u_rms, result.expected_before, result.expected)
         u, was, will = (digits(v / UM, 2) for v in numbers)
         words += f"; the uncertainty of the model is {u} µm there, so expect {was} -> {will} µm"
+    if result.u_tool > SMALLEST_OF_TOOL:
+        others = digits(float(np.hypot(result.expected, result.u_tool)) / UM, 2)
+        words += (
+            f" with tools set relative to the probe of the measurement ({others} µm with others)"
+        )
     return words
 
 

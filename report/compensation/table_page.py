@@ -7,6 +7,7 @@ from matstd.compensation.field import MachineErrors, Result
 from matstd.compensation.tables import Header, VerifiedTables
 from matstd.report.compensation.compensation_pictures import draw_errors_left, draw_shares
 from matstd.report.compensation.compensation_words import (
+    SMALLEST_OF_TOOL,
     control_title,
     extent_of,
     grown_sentence,
@@ -29,7 +30,7 @@ _MEANS = (
     "are named above."
 )
 _NEXT = (
-    "Enter one table, run its one-point test with the machine empty, then probe the standard again "
+    "Enter one table, run its one-point test, then probe the standard again "
     "and compare (`matstd compare RUN.csv --model`)."
 )
 _FIGURES = (
@@ -45,9 +46,11 @@ _TOOLS = (
     "position of the probe in the spindle from the lines of the rotary axes."
 )
 _TEST = (
-    "Zero an indicator at the datum, then read it at {place} against a straight gauge. The change "
-    "is exact; the other figures carry the uncertainty of the model. If the indicator changes in "
-    "the opposite direction (sign wrong), write the tables again with `--opposite {name}`."
+    "Zero an indicator at the datum, move {moved} alone, to {place}, and read it again: along the "
+    "motion against a gauge block, across it against a straightedge. Look along the way first: "
+    "nothing here knows table, clamps and spindle. The change is exact; the other figures carry "
+    "the uncertainty of the model. If the indicator changes in the opposite direction (sign "
+    "wrong), write the tables again with `--opposite {name}`."
 )
 
 
@@ -60,7 +63,8 @@ def write_compensation_page(
 ) -> None:
     """Write `report.html` and its pictures into a folder."""
     first = done[0].result
-    tools = _TOOLS.format(u=digits(first.u_tool / UM, 2)) if first.u_tool > 0.1 * UM else ""
+    is_noted = first.u_tool > SMALLEST_OF_TOOL
+    tools = _TOOLS.format(u=digits(first.u_tool / UM, 2)) if is_noted else ""
     names = ", ".join(f"`{name}`" for name in errors.left_out)
     results = {control_title(p.format): p.result for p in done}
     overview = "Error of the tool point over the workspace, before and after."
@@ -163,7 +167,7 @@ def _one_point_test(played: VerifiedTables, chain: Chain) -> Section:
     return Section(
         "One-point test of the sign",
         is_part=True,
-        sentences=[_TEST.format(place=", ".join(place), name=played.format)],
+        sentences=[_TEST.format(moved=test.axis, place=", ".join(place), name=played.format)],
         table=Table(("", "x", "y", "z"), rows, caption),
     )
 

@@ -4,6 +4,9 @@ from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 
+import numpy as np
+
+from matstd.artefact.reach import table_face
 from matstd.compensation.field import MachineErrors
 from matstd.probe_paths.campaign import setup_tolerance
 from matstd.probe_paths.language import LANGUAGES, Label, Q, interlocks, turn_tests
@@ -25,14 +28,12 @@ _REMEDY = {
     Label.RADIUS: "calibration of the probe; another stylus",
     Label.ROTATION: "column ROT of the preset's row",
     Label.TOP: "software limit of Z against the machine file",
-    Label.PRESET_X: "X of the preset's row: the centre of the table",
-    Label.PRESET_Y: "Y of the preset's row: the centre of the table",
-    Label.PRESET_Z: "Z of the preset's row: the face of the table",
     Label.TURNED: "`WRAPPED_ROTARY` of the axis in the INI file: 0",
     Label.TOOL_OFFSET: "X and Y of the probe in the tool table: zero",
     Label.ZERO_1: "the rotary axis in the preset's row",
     Label.ZERO_2: "the rotary axis in the preset's row",
 }
+_PRESETS = (Label.PRESET_X, Label.PRESET_Y, Label.PRESET_Z)
 _CAMPAIGN = (
     "Stations in their order; all logs are evaluated together. Between set-ups the standard is "
     "clamped anew; every line has its own sheet"
@@ -44,9 +45,11 @@ _TOLERANCE = (
     "the standard), or less where a touch would be lost, tested on the twin with 60 touches"
 )
 _BEYOND = (
-    "A standard with a larger offset may be hit: align it better, or state its actual pose in the "
-    "project."
+    "A standard with a larger offset may be hit, and no alarm tests where it stands: align it "
+    "better, or state its actual pose in the project."
 )
+_SEARCH = "Where the standard may stand elsewhere, a search program finds its place."
+_NO_SEARCH = "No program finds the place of the standard: align it within the offsets stated here."
 _ALARMS = (
     "A program that stops shows the label at which it stopped. Before number {missed} can occur, "
     "nothing has been touched"
@@ -100,8 +103,8 @@ def write_setup_page(
             f"`{plan.chain.arrangement}`, calibration `{calibration_hash(standard)}`, workshop "
             f"`{workshop}`, as in the head of every program and log."
         ),
-        means="The programs move as drawn only if standard, probe and preset stand as stated "
-        "here; the first program finds where the standard really is.",
+        means="The programs move as drawn only if standard, probe and preset stand as stated here. "
+        + (_NO_SEARCH if others.search is None else _SEARCH),
         next="Work through the steps in their order, single block and feed low at first. Stop at "
         "any difference from what is stated here.",
         key=(),
@@ -160,7 +163,9 @@ def _mount(plan: TouchPlan) -> list[Section]:
     return [
         Section("Mount", table=Table(columns, [place], _PLACE.format(zero=zero))),
         Section(
-            table=Table(columns, [limits, reasons], _TOLERANCE),
+            table=Table(
+                ["", *columns], [["at most ±", *limits], ["limited by", *reasons]], _TOLERANCE
+            ),
             notes=[f"Clamp from outside the faces and spheres: {held}.{free}"],
             warnings=[_BEYOND],
         ),
@@ -254,7 +259,8 @@ def _search_step(others: Companions) -> str:
 def _first_steps(others: Companions) -> list[str]:
     """The commissioning program, where the control may need it."""
     if others.first is None:
-        return []
+        missing = f"There is no commissioning program to try the control with: {others.no_first}."
+        return [missing] if others.no_first else []
     first = others.first.programs[0]
     return [
         f"On a control that has not run these programs before: first run `{first.name}` from the "
@@ -288,13 +294,23 @@ def _alarms(plan: TouchPlan, station: Station) -> Section:
     tests = [*interlocks(language, plan.frame), *turn_tests(language, plan.frame)]
     lost = "a touch met nothing; Z is up, the log contains all touches so far"
     rows = [[str(missed), lost, "", "pose of the standard; is the probe switched on?"]]
+    remedies = _REMEDY | _of_presets(plan)
     for label in dict.fromkeys(test.label for test in tests):
         own = [test for test in tests if test.label == label]
         what = "; ".join(dict.fromkeys(test.what for test in own))
         limits = "; ".join(dict.fromkeys(f"{test.limit:g}" for test in own))
-        rows.append([str(int(label)), what, limits, _REMEDY[label]])
+        rows.append([str(int(label)), what, limits, remedies[label]])
     columns = ("alarm", "test", "tolerance", "check")
     return Section("Alarms", table=Table(columns, rows, _ALARMS.format(missed=missed)))
+
+
+def _of_presets(plan: TouchPlan) -> dict[Label, str]:
+    """What to check of the preset: the face in the direction in which it looks, else the centre."""
+    out_of_face = np.abs(table_face(plan.setup.T_table_artefact)[:3, 2]) > 0.5
+    return {
+        label: f"{letter} of the preset's row: the {'face' if is_face else 'centre'} of the table"
+        for label, letter, is_face in zip(_PRESETS, "XYZ", out_of_face, strict=True)
+    }
 
 
 def _named(file: str, station: Station, number: int) -> str:

@@ -64,12 +64,22 @@ def draw_setup(plan: TouchPlan) -> Figure:
         # centred on the line of the arrow, which else leans by half of the letter
         top.annotate(name, ends[0, :2], ends[1, :2], ha="center", va="center",
                      arrowprops={"arrowstyle": "<-", "color": INK}, **halo)  # fmt: skip
-    top.set(aspect="equal", xlabel="x of the table in mm", ylabel="y of the table in mm")
+    of_face = _directions(T_face_table[:3, :3])
+    x, y = (f"{a} of the table in mm" for a in of_face[:2])
+    top.set(aspect="equal", xlabel=x, ylabel=y)
     at_zero = ", rotary axes at zero" * bool(plan.chain.rotary_axes)
-    top.set_title(f"from above{at_zero}", loc="left")
+    looks = "from above" if of_face[2] == "z" else f"onto the face, which looks along {of_face[2]}"
+    top.set_title(f"{looks}{at_zero}", loc="left")
     plain(top)
     _probe(side, plan)
     return drawn
+
+
+def _directions(R_face_table: Array) -> list[str]:
+    """Directions of the table frame along x, y, z of its face: `["z", "x", "y"]`."""
+    largest = [int(np.argmax(np.abs(row))) for row in R_face_table]
+    signs = ["-" if R_face_table[k, i] < 0.0 else "" for k, i in enumerate(largest)]
+    return [sign + "xyz"[i] for sign, i in zip(signs, largest, strict=True)]
 
 
 def _room_round(base: Array, solids: Sequence[Solid]) -> tuple[Array, Array]:

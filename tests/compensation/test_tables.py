@@ -359,8 +359,10 @@ def test_the_sign_switch_turns_every_value(
 
 
 @pytest.mark.parametrize("name", list(FORMATS))
-def test_the_one_point_test_detects_a_wrong_sign(results, name):
+def test_the_one_point_test_detects_a_wrong_sign(results, datum, bench_chain, name):
     test = results[name].acceptance
+    moved = np.flatnonzero(test.q != datum.q)
+    assert [bench_chain.axes[k] for k in moved] == [test.axis]
     change = test.with_table - test.without
     np.testing.assert_allclose(test.wrong_sign - test.without, -change, atol=0.1 * UM)
     assert np.abs(change).max() > 20 * UM

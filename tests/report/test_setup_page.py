@@ -14,14 +14,14 @@ from matstd.artefact.reach import TABLE, Solid
 from matstd.artefact.tool import Probe
 from matstd.probe_paths.campaign import setup_tolerance
 from matstd.probe_paths.emit import Feeds, make_programs
-from matstd.probe_paths.language import Dialect, read_dialect
+from matstd.probe_paths.language import Dialect, Label, read_dialect
 from matstd.probe_paths.locate import companions
 from matstd.probe_paths.plan import PlanOptions, Refusal, plan_touches, requests_at
 from matstd.probe_paths.stations import Station
-from matstd.report.pages import write_setup_page
+from matstd.report.pages import setup_page, write_setup_page
 from matstd.report.pages.setup_page import PAGE
 from matstd.report.plots import draw_order, draw_setup, draw_touches
-from matstd.twin.frames import apply, inverse, pose, rotation, turn
+from matstd.twin.frames import apply, fixed_xyz, inverse, pose, rotation, turn
 from matstd.twin.machine import Axis, linear_directions, make_chain, tip
 from matstd.twin.record import Setup
 from matstd.twin.units import DEG
@@ -139,10 +139,36 @@ def test_the_sheet_states_one_offset_per_direction_and_why(sheet, golden):
     text, _ = sheet
     (table,) = [t for t in shown_tables(text) if "Admissible offset" in t.caption]
     assert table.rows[table.headings :] == [
-        ["0.5"] * 3 + ["0.25"] * 3,
-        ["clearance"] * 6,
+        ["at most ±", *["0.5"] * 3, *["0.25"] * 3],
+        ["limited by", *["clearance"] * 6],
     ]
     assert "2.5" not in " ".join(table.rows[-2])
+
+
+@pytest.mark.parametrize(
+    ("angle", "axes", "presets"),
+    [
+        ((0.0, 0.0, 0.0), ("x", "y", "from above"), ("centre", "centre", "face")),
+        ((-90.0, 0.0, 0.0), ("z", "x", "onto the face, which looks along y"),
+         ("centre", "face", "centre")),
+        ((0.0, 90.0, 0.0), ("y", "z", "onto the face, which looks along x"),
+         ("face", "centre", "centre")),
+        ((90.0, 0.0, 0.0), ("z", "-x", "onto the face, which looks along -y"),
+         ("centre", "face", "centre")),
+    ],
+)  # fmt: skip
+def test_the_directions_of_a_face_that_looks_elsewhere(golden, angle, axes, presets):
+    """By the directions of its three axes; a body of the workshop is stated in them."""
+    setup = Setup("a", pose(fixed_xyz(np.array(angle) * DEG)))
+    plan = replace(golden.plan(), setup=setup)
+    (top, *_) = draw_setup(plan).axes
+    assert top.get_xlabel() == f"{axes[0]} of the table in mm"
+    assert top.get_ylabel() == f"{axes[1]} of the table in mm"
+    assert top.get_title(loc="left").startswith(axes[2])
+    of_presets = setup_page._of_presets(plan)
+    for letter, expected in zip("XYZ", presets, strict=True):
+        words = of_presets[Label[f"PRESET_{letter}"]]
+        assert words == f"{letter} of the preset's row: the {expected} of the table"
 
 
 def test_touches_that_look_less_far_than_the_clearance_limit_the_offset(golden):
