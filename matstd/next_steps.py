@@ -15,6 +15,20 @@ PLANTED = "thermal-lag(EZZ)=12um,tau=15min"  # in a trial on the twin: what the 
 YOUR_TABLE = "; --table-mm is the size of your table"  # a template states that of its kind
 RUN = "RUN.csv"  # a run that is still to be measured
 FEWEST_OF_A_TREND = 3  # runs of one machine, as `matstd trend` asks
+MODELLED = ("standard", "model", "start", "pitch", "effects")  # options on what runs are held to
+STATED = (
+    "datum",
+    "within",
+    "after",
+    "temperature",
+    "value",
+    "rpm",
+    "load",
+    "add",
+    "switch",
+    "active",
+)
+"""Options on the state of a machine that is corrected."""
 
 
 def next_line(args: Namespace) -> str:
@@ -44,6 +58,27 @@ def called(command: str, *words: object, more: str = "") -> str:
         stated[output] = str(free_name(Path(stated[output])))
     line = shlex.join(["matstd", command, *stated])
     return f"{line} {more}".rstrip()
+
+
+def kept(args: Namespace, *names: str) -> list[object]:
+    """Options as they were given, for a command that takes them too."""
+    words: list[object] = []
+    for name in names:
+        given = getattr(args, name, None)
+        if given is None or given is False or given == args.parser.get_default(name):
+            continue
+        option = f"--{name.replace('_', '-')}"
+        if given is True:
+            words.append(option)
+        elif isinstance(given, list) and isinstance(given[0], str):  # may be repeated
+            words += [word for one in given for word in (option, one)]
+        else:
+            words += [option, *(f"{v:g}" if isinstance(v, float) else v for v in _each(given))]
+    return words
+
+
+def _each(given: object) -> list[object]:
+    return given if isinstance(given, list) else [given]
 
 
 def _beside(output: str, name: str) -> Path:
@@ -91,7 +126,8 @@ def _calibrate(args: Namespace) -> Step:
 
 
 def _compare(args: Namespace) -> Step:
-    return called("diagnose", args.run_file, AUTO, "-o", "diagnosis"), "what the model lacks"
+    words = called("diagnose", args.run_file, *kept(args, *MODELLED), AUTO, "-o", "diagnosis")
+    return words, "what the model lacks"
 
 
 def _thermal(args: Namespace) -> Step:
@@ -106,8 +142,7 @@ def _thermal(args: Namespace) -> Step:
 
 def _errors(args: Namespace) -> list[object]:
     """The model, or the machine with its known errors, and the tool."""
-    known = ["--errors", args.errors] if args.errors else []
-    return [args.model, *known, "--tool-length", f"{args.tool_length:g}"]
+    return [args.model, *kept(args, "errors", "effects", "tool_length", *STATED)]
 
 
 def _probed_again(args: Namespace) -> str:

@@ -10,7 +10,7 @@ import pytest
 
 from matstd.api.machines import machine_file
 from matstd.cli import COMMANDS, FOLDERS, _parser, main
-from matstd.commands.measured.diagnose import _unexplained
+from matstd.commands.measured.diagnose import _again, _unexplained
 from matstd.next_steps import _AFTER, BY_RESULT, next_line
 
 CALLS = """
@@ -186,11 +186,36 @@ def test_the_line_stands_at_the_end(tmp_path, capsys) -> None:
     assert last == f"next: matstd new project --machine '{path}' -o {beside}   ({why})"
 
 
-def test_a_diagnosis_that_is_repeated_keeps_its_options() -> None:
-    from matstd.commands.measured.diagnose import _again
+NO_LAWS = SimpleNamespace(laws=None)
+MODELLED = ["--standard", "s.toml", "--start", "setup", "--effects", "a.py", "--effects", "b.py"]
+MODELLED += ["--pitch", "X=10", "Y=5"]
+STATED = ["--tool-length", "123.25", "--within", "X=-5:5", "--temperature", "spindle=21", "Z=20"]
+STATED += ["--load", "-1.5", "0", "2", "--after", "90", "--effects", "a.py", "--switch", "EXX=0"]
 
-    args = parsed(["diagnose", "run.csv", "--standard", "s.toml", "--auto", "-o", "OUT"])
-    line = _again(args, "--add", "drift", runs=("new.csv",))
+
+@pytest.mark.parametrize(
+    ("given", "kept", "follows"),
+    [
+        (["diagnose", "run.csv", *MODELLED, "--auto", "--only", "drift", "--add", "a", "-o", "O"],
+         "standard start effects pitch auto only add", lambda args: _again(args)),
+        (["diagnose", "run.csv", *MODELLED, "--add", "slip", "-o", "O"],
+         "standard start effects pitch add", lambda args: _unexplained(args, NO_LAWS)[0]),
+        (["compare", "run.csv", *MODELLED, "-o", "O"], "standard start effects pitch", None),
+        (["contributions", "m.toml", *STATED, "--program", "p.H", "-o", "O"],
+         "tool_length within temperature load after effects switch", None),
+        (["compensate", "m.toml", *STATED, "--program", "p.H", "-o", "O"],
+         "tool_length within temperature load after effects switch", None),
+    ],
+)  # fmt: skip
+def test_the_next_command_keeps_what_was_stated(given, kept, follows) -> None:
+    args = parsed(given)
+    line = follows(args) if follows else next_line(args).partition("   (")[0].removeprefix("next: ")
     again = parsed(shlex.split(line.removeprefix("matstd ")))
-    assert (again.run_files, again.standard, again.auto) == (["run.csv", "new.csv"], "s.toml", True)
-    assert (again.add, again.output) == (["drift"], "OUT-2")
+    for name in kept.split():
+        assert getattr(again, name) == getattr(args, name), name
+
+
+def test_a_diagnosis_that_is_repeated_takes_more() -> None:
+    args = parsed(["diagnose", "run.csv", "--add", "drift", "-o", "OUT"])
+    line = _again(args, "--add", "slip", runs=("new.csv",))
+    assert line == "matstd diagnose run.csv new.csv --add drift --add slip -o OUT-2"

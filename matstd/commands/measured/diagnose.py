@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from matstd.commands.measured.results import made_in_folder, say_files
 from matstd.console import console, say, say_each
-from matstd.next_steps import called
+from matstd.next_steps import MODELLED, called, kept
 from matstd.options import Options, measured, pitches, starting_model
 from matstd.twin.units import DEG, MINUTE, UM
 from matstd.twin.words import deviations_in, in_own_unit
@@ -101,8 +101,7 @@ def _next(args: argparse.Namespace, found: Diagnosis) -> tuple[str, str]:
 
 def _again(args: argparse.Namespace, *more: object, runs: Sequence[str] = ()) -> str:
     """The same diagnosis with further words and runs, into another folder."""
-    same = ["--standard", args.standard] if args.standard else []
-    same += ["--auto"] if args.auto else []
+    same = kept(args, *MODELLED, "only", "without", "hold_out", "add", "auto")
     return called("diagnose", *args.run_files, *runs, *same, *more, "-o", f"{args.output}-2")
 
 
@@ -144,7 +143,8 @@ def _probed(found: Diagnosis) -> list[str]:
 def _unexplained(args: argparse.Namespace, found: Diagnosis) -> tuple[str, str]:
     """A law gets a name; where none was looked for it is learnt, where there is none, measure."""
     if found.laws is None:
-        words = called("learn", *args.run_files, "-o", f"{args.output}-law")
+        options = kept(args, *MODELLED, "add")
+        words = called("learn", *args.run_files, *options, "-o", f"{args.output}-law")
         return words, "a law of what remains, from the run itself"
     if not found.laws.laws:
         words = _again(args, runs=("again.csv",))

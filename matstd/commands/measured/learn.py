@@ -49,22 +49,24 @@ def run(args: argparse.Namespace) -> int:
 
 def _next(args: argparse.Namespace, found: LearntLaws) -> tuple[str, str]:
     """A law gets a name, once a visit has distinguished it from its rivals; without one measure."""
-    from matstd.next_steps import called
+    from matstd.next_steps import MODELLED, called, kept
 
+    same = kept(args, *MODELLED, "add")
     out, again = Path(args.output), f"{args.output}-2"
     if not found.laws:
-        words = called("learn", *args.run_files, "again.csv", "-o", again)
+        words = called("learn", *args.run_files, "again.csv", *same, "-o", again)
         return words, "after another run that records what could be the cause"
     named = [one.library.effect.name for one in found.laws if one.is_of_library and one.library]
     if named:
-        words = called("diagnose", *args.run_files, "--add", *named, "-o", again)
+        words = called("diagnose", *args.run_files, *same, "--add", *named, "-o", again)
         return words, "the effect of the library that explains as much as the law, or more"
     if found.visit.touches is not None:
-        words = called("learn", *args.run_files, "visit.csv", "-o", again)
+        words = called("learn", *args.run_files, "visit.csv", *same, "-o", again)
         plan = out / "next_visit.csv"
         return words, f"after measuring {plan}; matstd replan writes its programs"
     named = [word for name in found.effect_names for word in ("--add", name)]
-    words = called("diagnose", *args.run_files, "--effects", out / "effect.py", *named, "-o", again)
+    same += ["--effects", out / "effect.py", *named]
+    words = called("diagnose", *args.run_files, *same, "-o", again)
     return words, "the law by the name that you give it in effect.py"
 
 

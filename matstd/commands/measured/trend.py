@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from matstd.commands.measured.results import made_in_folder, say_files
 from matstd.console import say, say_each
-from matstd.next_steps import called
+from matstd.next_steps import called, kept
 from matstd.options import RESULTS, Options
 
 if TYPE_CHECKING:
@@ -35,13 +35,14 @@ def run(args: argparse.Namespace) -> int:
 
 def _next(args: argparse.Namespace, found: Trend) -> tuple[str, str]:
     """After a step the runs around it are compared; else the last run is diagnosed."""
+    same = kept(args, "standard", "effects", "add")
     if found.follows:
-        words = called("diagnose", *found.follows, "--auto", "-o", f"{args.output}-change")
+        words = called("diagnose", *found.follows, *same, "--auto", "-o", f"{args.output}-change")
         return words, "what changed, from both runs together"
     if found.is_of_models:
-        words = called("trend", *args.runs, "-o", f"{args.output}-2")
+        words = called("trend", *args.runs, *same, "-o", f"{args.output}-2")
         return words, "after the next visit; its runs say more than its models"
-    words = called("diagnose", found.paths[-1], "-o", f"{args.output}-last")
+    words = called("diagnose", found.paths[-1], *same, "-o", f"{args.output}-last")
     return words, "what the machine lacks now"
 
 
