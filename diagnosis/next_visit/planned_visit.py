@@ -60,7 +60,10 @@ class NoPlan(Enum):
 
     NO_LAW = "no law was learnt"
     DECIDED = "the run decides already: odds of 20 : 1 or more against every other explanation"
-    SAME = "every rival does the same at every touch that can be made"
+    SAME = (
+        "the explanations that the run leaves open do the same at every touch that can be made; "
+        "every other one has odds of 20 : 1 or more against it"
+    )
     FEW = "too few of the touched points can be touched again from a known side"
     ALIKE = "no visit that was tried separates the rivals by three standard deviations"
 

@@ -115,11 +115,10 @@ def _machine(chain: Chain) -> TREE:
 
 
 def _is_level(chain: Chain) -> bool:
-    """Whether the spindle is level and Y upright: the table turns about Y, or stands below in Y."""
-    inner = [k for k in chain.links if k.carries_workpiece and k.kind == "rotary"]
-    if inner:
-        return bool(abs(inner[0].direction[1]) > abs(inner[0].direction[2])) and len(inner) == 1
-    return False
+    """Whether the spindle is level and Y upright: the table turns about Y, and none about Z."""
+    turned = [k for k in chain.links if k.carries_workpiece and k.kind == "rotary"]
+    about = [int(np.argmax(np.abs(k.direction))) for k in turned]
+    return about[:1] == [1] and 2 not in about
 
 
 def _body(body: Drawn) -> TREE:

@@ -104,7 +104,7 @@ def _size_of_errors(shown: ShownMachine) -> str:
         )
     largest = ", ".join(f"{_title(one)} {um(one.size)}" for one in shown.errors[:_NAMED])
     more = len(shown.errors) - _NAMED
-    rest = f"; {plural(more, 'other error')} less each" if more > 0 else ""
+    rest = f"; {plural(more, 'other error')} displace it less" if more > 0 else ""
     most = f"displace the tool point most (rms over the travels, tool {shown.length:g} mm): "
     if shown.is_assumed:
         return (
@@ -125,7 +125,7 @@ def _nearest(played: Played | None) -> str:
         return ""
     k = int(np.nanargmin(played.clearance))
     gap, what = float(played.clearance[k]), played.nearest[k]
-    where = f"at line {played.line[k]} of {played.names[played.which[k]]}"
+    where = f"at {played.place(k)} of {played.names[played.which[k]]}"
     if gap <= 0.0:
         return f"The tool runs into {what} {where}."
     return (

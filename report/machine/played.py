@@ -1,5 +1,6 @@
 """Programs that a page plays: positions between which every axis moves evenly."""
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
@@ -48,6 +49,12 @@ class Played:
 
     def __len__(self) -> int:
         return len(self.time)
+
+    def place(self, k: int) -> str:
+        """Where a position stands in its program, as the control counts: `block 54`, `line 55`."""
+        text = self.texts[self.which[k]].splitlines()[self.line[k] - 1]
+        numbered = re.match(r"\d+(?= )", text)
+        return f"block {numbered[0]}" if numbered else f"line {self.line[k]}"
 
     def thinned(self, most: int = MAX_POSITIONS) -> "Played":
         """With at most so many positions; those of touches, and the last, stay."""

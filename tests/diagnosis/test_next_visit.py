@@ -149,7 +149,7 @@ def test_carriers_that_do_the_same_are_a_class_and_no_rivals(warm) -> None:
     assert (plan.touches, plan.power, plan.rivals) == (None, None, ())
     assert [law.name for law in plan.alike] == ["law(EZZ,lin T-spindle)"]
     refusal, alike = visit_sentences(plan)
-    assert "every rival does the same" in refusal
+    assert "the explanations that the run leaves open do the same" in refusal
     assert alike.endswith("EZZ.")
 
 

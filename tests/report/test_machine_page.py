@@ -20,11 +20,12 @@ from matstd.report.machine import (
 )
 from matstd.report.machine.chain_bodies import chain_bodies
 from matstd.report.machine.error_series import series_at
+from matstd.report.machine.machine_page import _data
 from matstd.sensitivity.population import Population, drawn_errors
 from matstd.twin.errors import BadFile
 from matstd.twin.files import read_machine
 from matstd.twin.library import parse_sized_effect
-from matstd.twin.machine import exact_tip
+from matstd.twin.machine import Axis, exact_tip, make_chain
 from matstd.twin.machine.kinematics import carriers
 from matstd.twin.units import UM
 
@@ -486,7 +487,7 @@ def test_the_box_states_what_the_errors_do_and_what_to_do(machine):
     largest = max(functions, key=lambda one: one.size)
     said = boxed(machine_html(shown))
     assert f"tool 150 mm): {title_of(largest)}" in said
-    assert f"{len(functions) - 3} other errors less each." in said
+    assert f"{len(functions) - 3} other errors displace it less." in said
     assert "`--program` plays" in said
     assumed = boxed(machine_html(replace(shown, is_assumed=True)))
     assert "not those of yours" in assumed
@@ -502,7 +503,7 @@ def title_of(one):
     [
         ([4.0, 2.5, 9.0], ("keeps 2.50 mm clear of every body; VICE is nearest, at line 7 of P1",
                            "follow the set-up sheet")),
-        ([4.0, -0.5, 9.0], ("runs into VICE at line 7 of P1", "Do not run these programs")),
+        ([4.0, -0.5, 9.0], ("runs into VICE at block 6 of P1", "Do not run these programs")),
         (None, ("Without", "`--standard STANDARD.toml`")),
     ],
 )  # fmt: skip
@@ -510,7 +511,8 @@ def test_the_box_of_a_playback_names_the_nearest_body(machine, gap, words):
     count, whole = len(machine.chain.axes), np.arange(3)
     played = Played(
         names=("P1",),
-        texts=("",),
+        # of a control that numbers its blocks, and of one that does not
+        texts=("".join(f"{k} L X\n" if gap and gap[1] < 0 else "G0 X1\n" for k in range(9)),),
         time=whole.astype(float),
         q=np.zeros((3, count)),
         sides=np.zeros((3, count), dtype=int),
@@ -527,3 +529,20 @@ def test_the_box_of_a_playback_names_the_nearest_body(machine, gap, words):
     first, then = words
     assert then in said
     assert (first in said) is (gap is not None)
+
+
+@pytest.mark.parametrize(
+    ("notation", "up"),
+    [
+        ("[w C' B' X' f Y Z t]", "z"),
+        ("[w B' X' f Y Z t]", "y"),
+        ("[w B' A' X' f Z Y t]", "y"),  # the table stands on a cradle
+        ("[w B' C' X' f Y Z t]", "z"),
+        ("[w X' f Y Z B C t]", "z"),
+    ],
+)
+def test_a_machine_with_a_table_about_y_is_drawn_level(notation, up):
+    axes = {name.strip("'"): Axis((-1.0, 1.0)) for name in notation.split()[1:-1] if name != "f"}
+    chain = make_chain("a", notation, axes)
+    shown = ShownMachine(chain=chain, length=100.0, duration=SHIFT)
+    assert _data(shown, (), ())["up"] == up

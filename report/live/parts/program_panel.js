@@ -81,7 +81,8 @@ export class ProgramPanel {
     const { program } = this, { row } = state;
     if (row < 0) return;
     const which = program.which.values[row], line = program.line.values[row];
-    this.reading.textContent = `${clock(this.time)}  ${program.names[which]}, line ${line}`;
+    const block = this.block(which, line), place = block ? `block ${block[0]}` : `line ${line}`;
+    this.reading.textContent = `${clock(this.time)}  ${program.names[which]}, ${place}`;
     this.found.textContent = this.findings(row, deviation);
     this.list(which, line);
   }
@@ -106,12 +107,16 @@ export class ProgramPanel {
     return said.join("; ");
   }
 
+  /** The number that a line begins with, as in Klartext, where the control shows no other. */
+  block(which, line) { return /^\d+(?= )/.exec(this.texts[which]?.[line - 1] ?? ""); }
+
   list(which, line) {
     const lines = this.texts[which];
     if (!lines || this.listed === `${which}:${line}`) return;
     this.listed = `${which}:${line}`;
     const first = Math.max(0, line - 1 - AROUND), last = Math.min(lines.length, line + AROUND);
     this.text.start = first + 1;
+    this.text.style.listStyle = this.block(which, line) ? "none" : "";
     this.text.replaceChildren(...lines.slice(first, last).map((text, k) => element("li", {
       text: text || " ", class: first + k + 1 === line ? "now" : null,
       "aria-current": first + k + 1 === line ? "step" : null })));
