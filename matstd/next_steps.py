@@ -70,11 +70,16 @@ def kept(args: Namespace, *names: str) -> list[object]:
         option = f"--{name.replace('_', '-')}"
         if given is True:
             words.append(option)
-        elif isinstance(given, list) and isinstance(given[0], str):  # may be repeated
+        elif isinstance(given, list) and _is_repeated(args, name):
             words += [word for one in given for word in (option, one)]
         else:
             words += [option, *(f"{v:g}" if isinstance(v, float) else v for v in _each(given))]
     return words
+
+
+def _is_repeated(args: Namespace, name: str) -> bool:
+    """Whether an option takes one word each time that it is given."""
+    return any(one.dest == name and one.nargs is None for one in args.parser._actions)
 
 
 def _each(given: object) -> list[object]:

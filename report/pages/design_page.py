@@ -32,6 +32,7 @@ from matstd.report.pages.study_page import (
 )
 from matstd.report.plots import draw_order, draw_touch_curves, draw_touches
 from matstd.report.scenes import draw_standard
+from matstd.report.task import FILES
 from matstd.report.words import (
     best_rival,
     comparison_remarks,
@@ -63,7 +64,7 @@ _SHARES = (
     "total are the effects that unrestricted touches could show."
 )
 _NEXT = (
-    "Send `standard.step`, `drawing.pdf` and `making.json` to the workshop, have the piece "
+    "Send `{file}`, `drawing.pdf` and `making.json` to the workshop, have the piece "
     "calibrated (`matstd calibrate`), then follow `setup/setup.html` on the machine."
 )
 _CHECKED = (
@@ -98,7 +99,7 @@ def write_design_page(design: Design, folder: Path) -> list[str]:
         heading=f"{body.name}: material standard for {chain.name}",
         lead=f"{shown_line(placement)} {verdict}".lstrip(),
         means=_meaning(design),
-        next=_NEXT,
+        next=_NEXT.format(file=FILES[design.making.make]),
         key=_key(design),
         sections=[
             replace(_opening(design, folder, remarks), pictures=standard),

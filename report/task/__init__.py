@@ -5,6 +5,7 @@ from matstd.report.task.calibration_words import modulus_words as modulus_words
 from matstd.report.task.calibration_words import refusal_sentence as refusal_sentence
 from matstd.report.task.calibration_words import verdict_lines as verdict_lines
 from matstd.report.task.calibration_words import verdict_rows as verdict_rows
+from matstd.report.task.making_words import FILES as FILES
 from matstd.report.task.making_words import fewer_lines as fewer_lines
 from matstd.report.task.making_words import making_lines as making_lines
 from matstd.report.task.making_words import price_lines as price_lines

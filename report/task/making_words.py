@@ -19,7 +19,8 @@ _CONSTRUCTIONS = {
     Construction.PARTS: "plate, studs and a block for every face",
 }
 
-_FILES = {Construction.BILLET: "standard.step", Construction.PARTS: "standard-parts.step"}
+FILES = {Construction.BILLET: "standard.step", Construction.PARTS: "standard-parts.step"}
+"""What a workshop makes each of them from."""
 
 
 def making_lines(making: Making) -> list[str]:
@@ -49,7 +50,7 @@ def price_lines(prices: Sequence[Price], make: Construction) -> list[str]:
     """Price, hours and lead time of both constructions, and which of them to make."""
     if not prices:
         return ["price: not estimated, no rates are known of this material"]
-    last = f"make {_FILES[make]}, {_CONSTRUCTIONS[make]}"
+    last = f"make {FILES[make]}, {_CONSTRUCTIONS[make]}"
     named = [f"{_CONSTRUCTIONS[one.construction]} {_price_words(one)}" for one in prices]
     best, worst = sorted((one.total for one in prices), key=lambda total: total.value)
     apart = worst.value - best.value

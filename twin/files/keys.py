@@ -150,8 +150,10 @@ class _Kind(NamedTuple):
 
 
 _PLAIN = {
-    date: _Kind("a date such as 2031-05-06", "dates"),
-    datetime: _Kind("a date with its time, 2031-05-06T07:08:09", "dates with their times"),
+    date: _Kind("a date without quotes, such as 2031-05-06", "dates"),
+    datetime: _Kind(
+        "a date with its time, without quotes, 2031-05-06T07:08:09", "dates with their times"
+    ),
     bool: _Kind("true or false", "true or false"),
     str: _Kind("text in quotes", "texts in quotes"),
 }

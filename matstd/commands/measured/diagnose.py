@@ -77,7 +77,8 @@ def _next(args: argparse.Namespace, found: Diagnosis) -> tuple[str, str]:
     if found.withdrawn:
         return _unexplained(args, found)
     if found.verdict is Verdict.MISSING and not args.auto:
-        named = [step.effect.name for step in found.steps if step.effect is not None]
+        new = (step for step in found.steps if step.effect is not None and not step.is_named)
+        named = [step.effect.name for step in new if step.effect is not None]
         more = [word for name in named for word in ("--add", name)]
         why = "with the effect in model.toml; then matstd compensate"
         return _again(args, *more), why
