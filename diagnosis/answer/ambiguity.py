@@ -174,9 +174,13 @@ def _ranked(pool: Signatures, evidence: Array, least: float, without: float) -> 
 
 
 def _ordered(found: Sequence[Rival], prior: dict[str, float]) -> ConfusionClass:
-    """The class headed by its likeliest member, with odds against it."""
-    likely = np.array([prior[r.effect.name] - r.log_odds for r in found])
-    head, *rest = (found[i] for i in ranked(likely))
+    """The class headed by its likeliest member, with odds against it.
+
+    A factor on the usual size is as likely as it is small: 2.5 µm/K of the spindle before 43 µm/K
+    of the room.
+    """
+    likely = [prior[r.effect.name] - r.log_odds - np.log(r.sized.scale) for r in found]
+    head, *rest = (found[i] for i in ranked(np.array(likely)))
     shifted = [Rival(r.sized, r.log_odds - head.log_odds, r.overlap) for r in rest]
     close = tuple(r for r in shifted if r.log_odds < POLICY.log_odds_alike)
     return ConfusionClass(

@@ -56,14 +56,30 @@ def learn_remainder(
     ground = Ground.of(end.run)
     beside = learn_beside(Beginning.of_fit(end, base, known), rest, True, ground)
     if found:
-        alone = learn_beside(Beginning.of_fit(start, base, known), instead, True, ground)
-        odds = _odds(alone, beside, found) if alone.laws else -np.inf
+        begin = Beginning.of_fit(start, base, known)
+        alone = learn_beside(begin, instead, True, ground)
+        kept = _of_library(alone, found)
+        if 0 < len(kept) < len(found):
+            found = tuple(e for e in found if e not in kept)
+            instead = replace(instead, most_laws=min(instead.most_laws, len(found)))
+            begin = Beginning.of_fit(begin.fitted(kept), base, known)
+            alone = learn_beside(begin, instead, True, ground)
+        odds = _odds(alone, beside, found, len(base.parameters)) if alone.laws else -np.inf
         if odds >= policy.shorter:
             return replace(alone, instead_of=found, instead_odds=odds)
     return beside if is_left else None
 
 
-def _odds(alone: Learning, beside: Learning, found: Sequence[Effect]) -> float:
+def _of_library(alone: Learning, found: Sequence[Effect]) -> list[Effect]:
+    """Effects of whose kind the library explains a law better that was learnt in their place.
+
+    They stay, and only the others may be imitators.
+    """
+    kinds = {one.library.effect.kind for one in alone.laws if one.library and one.is_of_library}
+    return [e for e in found if e.kind in kinds]
+
+
+def _odds(alone: Learning, beside: Learning, found: Sequence[Effect], count: int) -> float:
     """Log odds of laws alone against effects with what was learnt beside them, on the same rows.
 
     Tables are curves, against which fewer parameters decide, as they do between two effects of the
@@ -71,10 +87,13 @@ def _odds(alone: Learning, beside: Learning, found: Sequence[Effect]) -> float:
     explains the run as well as a law with fewer parameters is that cause: a slip that turns nothing
     is a step of a displacement. Laws must therefore explain more than such effects, nothing
     charged.
+
+    Args:
+        found: Effects in whose place the laws alone stand.
+        count: Number of parameters of the starting model.
     """
     both = (alone, beside)
     gross = replace(alone.after.gross, rows=alone.after.gross.rows | beside.after.gross.rows)
-    count = len(alone.before.model.parameters)
     factor = np.maximum(*(one.after.prior.factor[:count] for one in both))
     fits = [_white(one, one.laws, factor, gross) for one in both]
     charges = [sum(law.charge for law in one.laws) for one in both]
