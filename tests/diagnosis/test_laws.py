@@ -6,13 +6,14 @@ import subprocess
 import sys
 import tomllib
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from simulator import probe, run_text
 from simulator_case import Ordinary, read_back, visible_size
 from simulator_case import named as hidden_effect
-from simulator_effects import slip
+from simulator_effects import SMALL, Hidden, slip
 from simulator_experiment import MACHINES, STATED_NOISE, random_experiment
 from simulator_laws import drawn, law_case
 from written import folder_text
@@ -57,7 +58,7 @@ from matstd.diagnosis.laws.formulas import columns_of, scan, spread
 from matstd.diagnosis.laws.learn import _by_rival as weighed
 from matstd.diagnosis.laws.learn import _of_its_run
 from matstd.diagnosis.laws.library import LibraryEffect
-from matstd.diagnosis.laws.remainder import _determined
+from matstd.diagnosis.laws.remainder import _determined, _of_library
 from matstd.diagnosis.laws.screening import _quick_frequencies, by_evidence, modulations
 from matstd.diagnosis.laws.search import Ground
 from matstd.diagnosis.laws.smooth import curve_laws
@@ -634,6 +635,51 @@ def test_a_diagnosis_withdraws_an_imitation_and_keeps_an_effect_of_the_library(s
     assert [one.effect.name for one in found.parts.headline] == [grown.name]
     size = found.steps[1].size
     assert abs(abs(size.value) - grown.amplitude) < 4.0 * size.u
+
+
+def test_a_name_of_whose_kind_the_library_explains_a_law_better_stays(stylus) -> None:
+    run = stylus[1][0]
+    lag, table, other = (
+        parse_effect(name, run.touches.chain)
+        for name in ("thermal-lag(EZZ)", "position-table(EYX)", "thermal-lag(EXX)")
+    )
+    explains = [LibraryEffect(other, 9.0), LibraryEffect(other, 5.0)]
+    laws = [LearntLaw(lag, (), 7.0, 7.0, 0.0, 0.0, (), library=one) for one in explains]
+    learning = SimpleNamespace(laws=laws)
+    assert [one.is_of_library for one in laws] == [True, False]
+    assert _of_library(learning, (table, lag)) == [lag]
+    assert _of_library(SimpleNamespace(laws=laws[1:]), (table, lag)) == []
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [22, 23])
+def test_a_growth_stays_beside_a_law_that_another_name_imitates(seed) -> None:
+    """A growth with the spindle, and a cover that pushes X aside beyond 30 mm, by the simulator."""
+    rng = np.random.default_rng(seed)
+    experiment = random_experiment(rng, "hsm600u", 10)
+    still = np.zeros(len(experiment.time))
+    plain = run_text(experiment, probe(experiment, [], still), False)
+    ordinary = Ordinary(read_back(plain, MACHINES["hsm600u"]).touches)
+
+    def pushed(s, a):
+        return {"EYX": a * SMALL * -np.expm1(-np.maximum(0.0, s.q["X"] - 30.0) / 45.0)}
+
+    cover = Hidden("?cover", "unknown", pushed)
+    grown = hidden_effect(rng, experiment.machine, "thermal-lag(EZZ,spindle)")
+    for one, visible in ((cover, 25.0), (grown, 60.0)):
+        one.amplitude = visible / visible_size(experiment, one, ordinary, STATED_NOISE)[0]
+    noise = rng.normal(0.0, STATED_NOISE, len(still))
+    text = run_text(experiment, probe(experiment, [grown, cover], noise), False)
+    found = diagnose(read_back(text, MACHINES["hsm600u"]), auto=True)
+    assert [effect.name for effect in found.withdrawn] == ["position-table(EYX)"]
+    (law,) = found.laws.laws
+    assert (law.law.carrier.name, law.law.factors[0].driver.name) == ("EYX", "X")
+    (lag,) = found.parts.headline
+    assert "spindle" in lag.effect.name
+    alike = {rival.effect.name for rival in found.steps[1].confusion.rivals}
+    assert "thermal-lag(EZZ,spindle)" in {lag.effect.name, *alike}
+    size = found.steps[1].size
+    assert abs(abs(size.value) - abs(grown.amplitude)) < 4.0 * size.u
 
 
 @pytest.mark.slow

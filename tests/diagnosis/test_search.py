@@ -7,7 +7,7 @@ import pytest
 from made_up import arm_poses
 from scipy.stats import f
 
-from matstd.diagnosis.answer.ambiguity import confusion_class, plausibility
+from matstd.diagnosis.answer.ambiguity import Rival, _ordered, confusion_class, plausibility
 from matstd.diagnosis.evidence import (
     EffectSet,
     Grid,
@@ -247,6 +247,18 @@ def test_look_alikes_are_a_class(planted) -> None:
     assert all(r.log_odds >= POLICY.log_odds_alike for r in made.distinguished)
     assert "thermal-lag(EXX)" not in everything
     assert "backlash(X)" not in everything
+
+
+def test_of_effects_alike_that_of_the_usual_size_is_named(case) -> None:
+    """By hand: log 16 = 2.8 against sixteen times the usual size, more than 0.5 for it."""
+    chain = case(8, "hmc1995", ("thermal-expansion(Y,scaleY)",)).run.touches.chain
+    room, spindle = (parse_effect(f"thermal-lag(EZZ,{s})", chain) for s in ("ambient", "spindle"))
+    for odds, head in ((0.5, spindle), (2.9, room)):
+        found = [
+            Rival(ScaledEffect(room, 16.0), 0.0, 1.0),
+            Rival(ScaledEffect(spindle, 1.0), odds, 1.0),
+        ]
+        assert _ordered(found, {room.name: 0.0, spindle.name: 0.0}).effect is head
 
 
 def test_a_sensor_is_believed_of_its_own_axis(case) -> None:

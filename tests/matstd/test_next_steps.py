@@ -159,14 +159,21 @@ def test_what_the_command_found_decides(tmp_path) -> None:
     assert next_line(args) == "next: matstd compensate OUT/model.toml   (tables for the control)"
 
 
+OWN = SimpleNamespace(is_behind_library=False)
+BEHIND = SimpleNamespace(
+    is_behind_library=True, library=SimpleNamespace(effect=SimpleNamespace(name="slip"))
+)
+
+
 @pytest.mark.parametrize(
     ("laws", "words"),
     [
         (None, "matstd learn run.csv -o OUT-law"),
         ({"laws": ()}, "matstd diagnose run.csv again.csv -o OUT-2"),
-        ({"laws": (1,), "of_library": ["drift"]}, "matstd diagnose run.csv --add drift -o OUT-2"),
+        ({"laws": (OWN,), "of_library": ["drift"]}, "matstd diagnose run.csv --add drift -o OUT-2"),
+        ({"laws": (OWN, BEHIND), "of_library": []}, "matstd diagnose run.csv --add slip -o OUT-2"),
         (
-            {"laws": (1,), "of_library": [], "effect_names": ["learnt-law"]},
+            {"laws": (OWN,), "of_library": [], "effect_names": ["learnt-law"]},
             "matstd diagnose run.csv --effects OUT/effect.py --add learnt-law -o OUT-2",
         ),
     ],

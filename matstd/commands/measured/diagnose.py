@@ -150,8 +150,12 @@ def _unexplained(args: argparse.Namespace, found: Diagnosis) -> tuple[str, str]:
     if not found.laws.laws:
         words = _again(args, runs=("again.csv",))
         return words, "after another run that records what could be the cause"
-    if found.laws.of_library:
-        named = [word for name in found.laws.of_library for word in ("--add", name)]
+    # laws beside it are learnt anew
+    better = [
+        one.library.effect.name for one in found.laws.laws if one.is_behind_library and one.library
+    ]
+    if of_library := found.laws.of_library or list(dict.fromkeys(better)):
+        named = [word for name in of_library for word in ("--add", name)]
         return _again(args, *named), "the effect of the library, in place of the law"
     effect = Path(args.output) / "effect.py"
     named = [word for name in found.laws.effect_names for word in ("--add", name)]
