@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from matstd.artefact.reach import table_face
+from matstd.artefact.reach import standing_remarks, table_face
 from matstd.compensation.field import MachineErrors
 from matstd.probe_paths.campaign import setup_tolerance
 from matstd.probe_paths.language import LANGUAGES, Label, Q, interlocks, turn_tests
@@ -55,8 +55,9 @@ _ALARMS = (
     "nothing has been touched"
 )
 _COMMON_STEPS = (
-    "First run in single block with the override low, up to the first touch. Then hold a hand over "
-    "the ball in the air: the program must retract and stop.",
+    "First run in single block with the override low. While the probe moves to its first touch, "
+    "deflect the stylus with a plastic rod, never by hand: it must stop and retract at once. Start "
+    "the program again afterwards.",
     "Compare the place of the first touch with the drawing before you continue.",
 )
 
@@ -169,7 +170,7 @@ def _mount(plan: TouchPlan) -> list[Section]:
                 ["", *columns], [["at most ±", *limits], ["limited by", *reasons]], _TOLERANCE
             ),
             notes=[f"Clamp from outside the faces and spheres: {held}.{free}"],
-            warnings=[_BEYOND],
+            warnings=[_BEYOND, *standing_remarks(plan.chain, T)],
         ),
     ]
 

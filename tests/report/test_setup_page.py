@@ -171,6 +171,14 @@ def test_the_directions_of_a_face_that_looks_elsewhere(golden, angle, axes, pres
         assert words == f"{letter} of the preset's row: the {expected} of the table"
 
 
+def test_the_sheet_says_of_which_face_of_the_table_it_is_made(golden):
+    """A table about Z, and a standard on a face that looks along Y: a rotation may be missing."""
+    setup = Setup("a", pose(fixed_xyz(np.array([-90.0, 0.0, 0.0]) * DEG)))
+    _, held = setup_page._mount(replace(golden.plan(), setup=setup))
+    assert "stands on a face that looks along +Y of the table frame" in held.warnings[1]
+    assert len(setup_page._mount(golden.plan())[1].warnings) == 1
+
+
 def test_touches_that_look_less_far_than_the_clearance_limit_the_offset(golden):
     """A path that ends 0.25 mm beyond the surface admits 0.2 mm along Z, not 0.3."""
     plan = golden.plan()
