@@ -359,6 +359,21 @@ def questions(tree: ast.Module) -> list[tuple[str, int]]:
     return found
 
 
+def test_nothing_is_overwritten_unasked() -> None:
+    """Whatever takes `force` does without; an empty text is a help that another one replaces."""
+    for file in FILES:
+        for node in nodes_of(tree_of(file)):
+            if not isinstance(node, ast.FunctionDef):
+                continue
+            named = (*node.args.posonlyargs, *node.args.args)
+            stated = dict(zip(reversed(named), reversed(node.args.defaults), strict=False))
+            stated |= zip(node.args.kwonlyargs, node.args.kw_defaults, strict=True)
+            given = [value for one, value in stated.items() if one.arg == "force" and value]
+            assert all(ast.unparse(value) in ("False", "''") for value in given), (
+                f"{file}: {node.name}"
+            )
+
+
 def test_effects_are_asked_by_their_traits() -> None:
     """Above the twin nothing depends on which class an effect is of."""
     from matstd.twin.model import Traits

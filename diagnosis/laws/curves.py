@@ -102,7 +102,7 @@ class Curves:
         groups = [Group(np.stack([b.C for b in alike]), alike) for alike in each]
         return cls(tuple(groups), tuple(waves))
 
-    def evidence(self, space: Space, least: float = -np.inf) -> list[tuple[Waves, Group, Evidence]]:
+    def evidence(self, space: Space, least: float) -> list[tuple[Waves, Group, Evidence]]:
         """Of all waves at all carriers; exact above the least."""
         self._free_of(space)
         out = []

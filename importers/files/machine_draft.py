@@ -19,7 +19,7 @@ DATA_TRAVEL = "  # PLACEHOLDER: that of the data; --travel states it"
 SIDES = "# PLACEHOLDER: the data do not show which axes carry the workpiece (prime)"
 
 
-def machine_text(chain: Chain, source: str, is_known: bool = False) -> str:
+def machine_text(chain: Chain, source: str, is_known: bool) -> str:
     """Text of a machine file whose travels are those of some data.
 
     Every line that the data do not determine is marked PLACEHOLDER; if the source states order,

@@ -157,9 +157,11 @@ def test_orientations_that_are_not_those_of_the_arm_are_refused(tmp_path, capsys
     assert "if they are inverted" in capsys.readouterr().err
     assert main(words(tmp_path)) == 0
     assert "--u-urad states their standard uncertainty" in capsys.readouterr().out
-    sheet = written(tmp_path, q, place, {n: 2.0 * v for n, v in quaternion(turn).items()})
-    with pytest.raises(BadFile, match="a quaternion of length 2, expected 1"):
-        read_arm(sheet, is_oriented=True)
+    for length in (2.0, 1.012):
+        sheet = written(tmp_path, q, place, {n: length * v for n, v in quaternion(turn).items()})
+        with pytest.raises(BadFile, match=f"a quaternion of length {length:g}, expected 1"):
+            read_arm(sheet, is_oriented=True)
+    read_arm(written(tmp_path, q, place, {n: 1.008 * v for n, v in quaternion(turn).items()}))
     sheet = written(tmp_path, q, place, {})
     with pytest.raises(BadFile, match="qw qx qy qz"):
         import_arm(sheet, U, dh=read_sheet(tmp_path / "dh.csv"), u_angle=U_ANGLE)
