@@ -111,7 +111,7 @@ def test_a_cheap_encoder_off_by_degrees_is_read_and_its_harmonics_found(tmp_path
     test = read_positioning(read_sheet(tmp_path / "joint.csv"), "C", named=("encoder", "actual"))
     run = positioning_run(test, one_axis_machine("C", test.target), 0.06 * DEG)
     (tmp_path / "run.csv").write_text(run_text(run, "machine.toml"))
-    (tmp_path / "machine.toml").write_text(machine_text(run.touches.chain, "joint.csv"))
+    (tmp_path / "machine.toml").write_text(machine_text(run.touches.chain, "joint.csv", False))
     again = read_run(tmp_path / "run.csv")
     assert len(again) == len(run)
     assert np.abs(run.deviation).max() > 20.0  # mm at an arm of one metre
