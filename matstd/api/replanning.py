@@ -35,7 +35,7 @@ from matstd.probe_paths.emit import SEARCH, Feeds, ProgramSet, make_programs
 from matstd.probe_paths.language import Dialect, language_of, read_dialect
 from matstd.probe_paths.locate import PlannedVisit, Spread, find_standard, planned_again, read_visit
 from matstd.probe_paths.stations import Station, all_programs
-from matstd.report.laws import visit_lines
+from matstd.report.laws import made_on_twin, visit_conditions
 from matstd.report.pages import Printer
 from matstd.report.words import located_lines
 from matstd.stages.sheets import write_sheets
@@ -68,6 +68,7 @@ class Replanned(Displayed):
     feeds: Feeds  # of the programs
     lines: tuple[str, ...]  # sentences on the place that was found, or on how a visit is made
     left_alone: tuple[str, ...]  # set-ups whose programs stay as they are
+    conditions: tuple[str, ...] = ()  # in which the programs of a visit are to run, for the sheet
 
     @property
     def programs(self) -> ProgramSet:
@@ -91,7 +92,8 @@ class Replanned(Displayed):
         for name in ("machine.toml", "standard.toml"):
             shutil.copyfile(self.design / name, folder / name)
         self.programs.write(folder / "programs")
-        write_sheets(folder / SHEET, self.stations, self.feeds, printed_by)
+        sheets = folder / SHEET
+        write_sheets(sheets, self.stations, self.feeds, printed_by, conditions=self.conditions)
 
 
 def replan(
@@ -175,16 +177,26 @@ def planned_visit(
     stations = []
     for name, visit in visits.items():
         here = [program for program in programs if program.heading.setup.name == name]
-        first = next(iter(by_probe(here, control).items()))
-        stations += _stations(dict([first]), standard, chain, here[0].heading.setup, visit)
+        words, first = next(iter(by_probe(here, control).items()))
+        own = {replace(words, prefix=_next_prefix(words.prefix)): first}
+        stations += _stations(own, standard, chain, here[0].heading.setup, visit)
+    resumed = _after_standstill(stations)
+    conditions = visit_conditions(schedule, resumed)
     return Replanned(
         design=design,
         setup=stations[0].plan.setup,
         stations=tuple(stations),
         feeds=feeds_of(programs, chain),
-        lines=tuple(visit_lines(schedule, _after_standstill(stations), *_on_twin(stations, chain))),
+        lines=(made_on_twin(*_on_twin(stations, chain)), *conditions),
         left_alone=(),
+        conditions=tuple(conditions),
     )
+
+
+def _next_prefix(prefix: str) -> str:
+    """First letters of the programs of a visit: on the control the files of the run stay."""
+    before, visit, number = re.match(r"(.*?)(V(\d*))?\Z", prefix).groups()  # type: ignore[union-attr]
+    return f"{before}V{int(number or 1) + 1}" if visit else f"{before}V"
 
 
 def _on_twin(stations: Sequence[Station], chain: Chain) -> tuple[int, float]:

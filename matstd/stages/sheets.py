@@ -18,8 +18,12 @@ def write_sheets(
     printed_by: Printer | None,
     raised: float = RAISED,
     errors: MachineErrors | None = None,
+    conditions: Sequence[str] = (),
 ) -> None:
-    """Write a sheet for every station, a PDF with `printed_by`, and the programs beside it."""
+    """Write a sheet for every station, a PDF with `printed_by`, and the programs beside it.
+
+    Other arguments as of `write_setup_page`.
+    """
     setups: set[str] = set()
     for number, station in enumerate(stations):
         is_further = station.setup in setups
@@ -27,5 +31,5 @@ def write_sheets(
         plan, words = station.plan, station.dialect
         others = companions(plan, words, feeds, raised, is_further=is_further)
         others.write(folder)
-        sheet = write_setup_page(folder, stations, number, others, errors)
+        sheet = write_setup_page(folder, stations, number, others, errors, conditions)
         print_report(folder, printed_by, sheet.stem)

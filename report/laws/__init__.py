@@ -16,5 +16,6 @@ from matstd.report.laws.law_words import rival_sentence as rival_sentence
 from matstd.report.laws.law_words import short_words as short_words
 from matstd.report.laws.law_words import size_words as size_words
 from matstd.report.laws.run_words import second_run_sentence as second_run_sentence
-from matstd.report.laws.visit_words import visit_lines as visit_lines
+from matstd.report.laws.visit_words import made_on_twin as made_on_twin
+from matstd.report.laws.visit_words import visit_conditions as visit_conditions
 from matstd.report.laws.visit_words import visit_sentences as visit_sentences

@@ -129,18 +129,20 @@ def _alike_sentence(plan: VisitPlan) -> str:
     )
 
 
-def visit_lines(schedule: VisitSchedule, resumed: str, touches: int, duration: float) -> list[str]:
+def made_on_twin(touches: int, duration: float) -> str:
+    """What the programs of a planned visit made on the twin, and how long they take, s."""
+    return f"The twin made all {touches} touches, {span(duration)} without standstill."
+
+
+def visit_conditions(schedule: VisitSchedule, resumed: str) -> list[str]:
     """What the operator does besides running the programs of a planned visit.
 
     Args:
         resumed: Name of the first program after the standstill; "" without one.
-        touches: That the programs made on the twin.
-        duration: Of the programs alone, s.
     """
-    begin = "Begin with a cold machine."
+    lines = ["Begin with a cold machine."]
     if schedule.warm_up:
-        begin = f"Let the machine move for {span(schedule.warm_up)} before the first program."
-    lines = [f"The twin made all {touches} touches, {span(duration)} without standstill.", begin]
+        lines = [f"Let the machine move for {span(schedule.warm_up)} before the first program."]
     if resumed:
         lines.append(f"Stand still for {span(schedule.pause)} before {resumed}.")
     if schedule.slowness != 1.0:

@@ -67,6 +67,7 @@ def write_setup_page(
     number: int,
     others: Companions,
     errors: MachineErrors | None = None,
+    conditions: Sequence[str] = (),
 ) -> Path:
     """Write the sheet of a station with its drawing and playback; returns the path of the page.
 
@@ -76,6 +77,7 @@ def write_setup_page(
         number: Of the station, from 0.
         others: Programs that are run before its own.
         errors: Of the machine that the playback shows; None for none.
+        conditions: Sentences on the state of the machine in which the programs are to run.
     """
     station = stations[number]
     plan, programs, dialect = station.plan, station.programs, station.dialect
@@ -113,7 +115,7 @@ def write_setup_page(
             *([_campaign(stations, number)] if many else []),
             *_mount(plan),
             *_probe(station),
-            *_run(station, others, playback),
+            *_run(station, others, playback, conditions),
             _alarms(plan, station),
             *([Section("Omitted touches", items=_omitted(plan))] if plan.refused else []),
         ],
@@ -208,7 +210,9 @@ def _probe(station: Station) -> list[Section]:
     ]
 
 
-def _run(station: Station, others: Companions, playback: str) -> list[Section]:
+def _run(
+    station: Station, others: Companions, playback: str, conditions: Sequence[str]
+) -> list[Section]:
     """The programs, and the steps from loading to the logs."""
     rows = [
         [f"`{p.name}`", str(p.touches), f"{p.duration / MINUTE:.0f}"]
@@ -219,7 +223,11 @@ def _run(station: Station, others: Companions, playback: str) -> list[Section]:
         "motion with its line, readings, touch, clearance and the deviation that it finds."
     )
     return [
-        Section("Run", table=Table(("program", "touches", "about, in min"), rows)),
+        Section(
+            "Run",
+            notes=[" ".join(conditions)] if conditions else [],
+            table=Table(("program", "touches", "about, in min"), rows),
+        ),
         Section(sentences=[shown], items=_steps(others), is_ordered=True),
     ]
 

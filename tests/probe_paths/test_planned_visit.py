@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from unchanged import folded, page_text
 
-from matstd.api.replanning import planned_visit
+from matstd.api.replanning import _next_prefix, planned_visit
 from matstd.probe_paths.locate.planned_visit import VisitSchedule, read_visit
 from matstd.twin.errors import BadFile
 from matstd.twin.units import DEG
@@ -92,3 +92,11 @@ def test_touches_beside_the_standard_are_refused(design, visit) -> None:
     visit.write_text("\n".join(lines) + "\n", encoding="utf-8")
     with pytest.raises(BadFile, match=r"line 3, px_mm to pz_mm.* of this standard"):
         planned_visit(visit, design)
+
+
+def test_the_programs_of_a_visit_replace_none_of_the_run() -> None:
+    prefixes = ["MS"]
+    for _ in range(3):
+        prefixes.append(_next_prefix(prefixes[-1]))
+    assert prefixes == ["MS", "MSV", "MSV2", "MSV3"]
+    assert _next_prefix("MS30") == "MS30V"
