@@ -175,6 +175,16 @@ def test_sides_that_all_stand_off_alike(
         read_run(write(tmp_path, table, radius=radius))
 
 
+@pytest.mark.parametrize("radius", [2.0, 2.4, 4.0])
+def test_a_radius_that_stated_deviations_contradict_is_named(tmp_path: Path, radius: float) -> None:
+    """The deviations are those of 3 mm: the readings say more or less by the radius everywhere."""
+    with pytest.raises(BadFile, match=rf"probe\.radius_mm: found {radius:g}, expected 3\.00, with"):
+        read_run(write(tmp_path, rows(), stated(), radius=radius))
+    table = rows()
+    table[:, 1] += 0.9  # a set-up elsewhere shows on two sides with opposite signs
+    assert len(read_run(write(tmp_path, table, stated()))) == COUNT
+
+
 def test_a_standard_somewhere_else_is_no_wrong_radius(tmp_path: Path) -> None:
     """The set-up is fitted later: a millimetre of it is no reason to refuse."""
     table = rows()

@@ -94,6 +94,7 @@ def _without_slips(run: Run, table: CsvTable, remarks: list[str]) -> Run:
         astray[far] = True
     if "dev_um" in table and states_readings(run):
         computed = computed_deviation(run.touches)
+        _check_radius(run[~astray], computed[~astray], table)
         apart = np.flatnonzero((_gap(run, computed) > LARGEST_GAP) & ~astray)
         if len(apart):
             row = apart[0]
@@ -134,6 +135,15 @@ def states_readings(run: Run) -> bool:
     """
     touches = run.touches
     return touches.instrument.is_ball_on_standard and bool(np.all(touches.radius > 0.0))
+
+
+def _check_radius(run: Run, computed: Array, table: CsvTable) -> None:
+    """Refuse a radius of the ball with which readings and stated deviations contradict."""
+    offset = _offset_on_all_sides(run, computed - run.deviation)
+    if abs(offset) >= LARGEST_OFFSET:
+        radius = float(np.median(run.touches.radius))
+        expected = f"{radius + offset:.2f}, with which the readings give dev_um"
+        raise BadFile(table.path, "probe.radius_mm", f"{radius:g}", expected)
 
 
 def _gap(run: Run, computed: Array) -> Array:
@@ -243,10 +253,10 @@ def _check_units(run: Run, table: CsvTable) -> None:
             raise BadFile(table.path, "column dev_um", found, f"{expected} {words}?")
 
 
-def _check_offset(run: Run, table: CsvTable) -> None:
-    """Refuse deviations that are large and equal on every side of the standard.
+def _offset_on_all_sides(run: Run, values: Array) -> float:
+    """What values along the normals have in common on every side of the standard, mm; 0 for none.
 
-    ``dev = offset + n . shift`` with a shift of each set-up: wrong radii of the ball make the
+    ``value = offset + n . shift`` with a shift of each set-up: wrong radii of the ball make the
     offset, wrong places of the standard the shifts.
     """
     touches = run.touches
@@ -254,17 +264,23 @@ def _check_offset(run: Run, table: CsvTable) -> None:
     shifts, one = np.column_stack(sides), np.ones(len(run))
 
     def beside_shifts(values: Array) -> Array:
-        """What shifts of the set-ups leave of some deviations."""
+        """What shifts of the set-ups leave of some values."""
         return np.asarray(values - shifts @ np.linalg.lstsq(shifts, values, rcond=None)[0])
 
     A = np.column_stack([one, shifts])
-    offset = float(np.linalg.lstsq(A, run.deviation, rcond=None)[0][0])
+    offset = float(np.linalg.lstsq(A, values, rcond=None)[0][0])
     # an offset differs from shifts of the set-ups only where normals point to several sides
-    if abs(offset) < LARGEST_OFFSET or rms(beside_shifts(one)) <= 0.1:
+    if rms(beside_shifts(one)) <= 0.1 or rms(beside_shifts(values - offset)) > 0.2 * abs(offset):
+        return 0.0
+    return offset
+
+
+def _check_offset(run: Run, table: CsvTable) -> None:
+    """Refuse deviations that are large and equal on every side of the standard."""
+    offset = _offset_on_all_sides(run, run.deviation)
+    if abs(offset) < LARGEST_OFFSET:
         return
-    if rms(beside_shifts(run.deviation - offset)) > 0.2 * abs(offset):
-        return
-    radius = float(np.median(touches.radius))
+    radius = float(np.median(run.touches.radius))
     inwards = abs(offset / (2.0 * radius) + 1.0) < 0.1 if radius else False
     raise BadFile(
         table.path,
