@@ -231,6 +231,45 @@ def test_a_touch_at_the_limit_is_used(tmp_path: Path) -> None:
     assert any("column X_mm" in remark and remark.endswith("used so") for remark in run.remarks)
 
 
+@pytest.mark.parametrize(
+    ("gaps", "is_asked"),
+    [
+        (np.random.default_rng(1).uniform(20e3, 80e3, COUNT), True),  # 20 to 80 s a touch, in ms
+        (np.random.default_rng(1).uniform(20.0, 80.0, COUNT), False),
+        (np.full(COUNT, 7.2e4), False),  # an indicator is read every twenty hours for 50 days
+    ],
+)
+def test_a_clock_in_milliseconds_is_asked_about(tmp_path: Path, gaps, is_asked: bool) -> None:
+    table = rows()
+    table[:, 0] = np.cumsum(gaps)
+    remarks = read_run(write(tmp_path, table)).remarks
+    assert [r for r in remarks if "looks like milliseconds; nothing was changed" in r] == list(
+        remarks
+    )
+    assert bool(remarks) == is_asked
+
+
+@pytest.mark.parametrize(
+    ("spindle", "ambient", "is_asked"),
+    [
+        ((68.0, 78.0), (20.0, 20.5), True),  # 20 to 25.6 °C
+        ((68.0, 52.0), (20.0, 20.5), True),
+        ((55.0, 45.0), (20.0, 20.5), False),  # a spindle that has run: 12.8 °C beside 20
+        ((20.0, 38.0), (20.0, 20.5), False),
+        ((68.0, 39.0), (20.0, 20.5), False),  # a hot one that cools: 3.9 °C in the end
+    ],
+)
+def test_a_sensor_in_fahrenheit_is_asked_about(
+    tmp_path: Path, spindle, ambient, is_asked: bool
+) -> None:
+    ends = {"T_spindle_degC": spindle, "T_ambient_degC": ambient}
+    more = {name: np.linspace(*two, COUNT).tolist() for name, two in ends.items()}
+    remarks = read_run(write(tmp_path, rows(), more)).remarks
+    asked = [r for r in remarks if "T_spindle_degC begins with 68, which are 20 °C" in r]
+    assert bool(asked) == is_asked
+    assert not [r for r in remarks if "ambient" in r]
+
+
 def test_a_clock_that_stands_still_is_reported(tmp_path: Path) -> None:
     table = rows()
     table[:, 0] = 0.0

@@ -10,7 +10,7 @@ from matstd.twin.files.table import CsvTable
 from matstd.twin.frames import Array, IntArray, Mask
 from matstd.twin.numbers import rms
 from matstd.twin.record import Instrument, Run, computed_deviation, without_copies
-from matstd.twin.units import UM
+from matstd.twin.units import DAY, UM
 
 LARGEST_DEVIATION = 10.0
 """Deviations beyond this (mm) are refused: units are mixed up, or set-up or probe are wrong."""
@@ -43,7 +43,12 @@ fault."""
 LARGEST_ARM = 5.0
 """Distance (mm) of points from the tool, across the measured direction, that is reported: 50 µrad
 on that arm are 0.25 µm."""
-LONGEST_PAUSE = 86400.0  # a pause (s) shorter than a day is not reported
+LONGEST_PAUSE = DAY  # a shorter pause is not reported, s
+MIN_GAPS, LONGEST_RUN, SLOWEST_TOUCH = 30, 30.0, 1000.0
+"""Times are asked about from so many gaps on, in runs of more days, with more seconds a touch. A
+touch takes seconds; a standard stays clamped for days."""
+SAME_ROOM, ROOMS = 1.0, (5.0, 45.0)
+"""Temperatures (K) in one room when a run begins, and those (degC) of a machine in °F."""
 
 _OTHER_UNITS = {
     1e-3: "mm in a column of µm",
@@ -58,6 +63,7 @@ def checked_run(run: Run, table: CsvTable, remarks: list[str]) -> Run:
     remarks[:] = run.remarks
     run = _without_slips(run, table, remarks)
     run = _with_clock(run, table, remarks)
+    _ask_units(run, remarks)
     _check_units(run, table)
     _check_offset(run, table)
     _compare_with_readings(run, table, remarks)
@@ -229,6 +235,35 @@ def _with_clock(run: Run, table: CsvTable, remarks: list[str]) -> Run:
         "everything else is used"
     )
     return replace(run, touches=replace(run.touches, time=np.zeros(len(run))))
+
+
+def _ask_units(run: Run, remarks: list[str]) -> None:
+    """Report times that look like milliseconds, and temperatures that look like degrees Fahrenheit.
+
+    Probing a standard takes seconds a touch, by paths of different length; who reads an instrument
+    every hour for weeks does so at even intervals.
+    """
+    time, known = run.touches.time, run.touches.temperature
+    gaps = np.diff(time)
+    if len(gaps) >= MIN_GAPS:
+        usual, days = float(np.median(gaps)), float(np.ptp(time)) / DAY
+        is_even = float(np.std(gaps)) < 0.1 * usual
+        if days > LONGEST_RUN and usual > SLOWEST_TOUCH and not is_even:
+            remarks.append(
+                f"touches are {usual:.0f} s apart for {days:.0f} days: time_s looks like "
+                "milliseconds; nothing was changed"
+            )
+    for name, values in known.items():
+        others = [float(v[0]) for other, v in known.items() if other != name]
+        others.append(float(run.touches.body_temperature[0]))
+        celsius = (values - 32.0) / 1.8
+        meant = float(celsius[0])
+        is_alike = any(abs(meant - v) < SAME_ROOM < values[0] - v for v in others)
+        if is_alike and ROOMS[0] < celsius.min() and celsius.max() < ROOMS[1]:
+            remarks.append(
+                f"T_{name}_degC begins with {values[0]:.4g}, which are {meant:.3g} °C if it is in "
+                "°F, as the others begin with; nothing was changed"
+            )
 
 
 def _check_units(run: Run, table: CsvTable) -> None:
