@@ -167,7 +167,8 @@ def outcome(change: dict[str, Any], folder: Path) -> tuple[str, str]:
         feasibility(brief).check()
     except DesignError as error:
         return "refused", str(error).replace(f"{folder}/", "")
-    said = [*brief.remarks, *standing_remarks(brief.chain, brief.setup.T_table_artefact)]
+    standing = standing_remarks(brief.chain, brief.setup.T_table_artefact, brief.down)
+    said = [*brief.remarks, *standing]
     return "asked" if said else "ACCEPTED", "; ".join(map(str, said))
 
 

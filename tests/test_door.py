@@ -115,6 +115,22 @@ def test_large_records_have_a_short_text(there) -> None:
         assert len(record._repr_html_()) < 5000
 
 
+def test_results_print_what_their_commands_say(there) -> None:
+    """A sentence with figures, no dump of fields."""
+    program = ["programs/MS_A_1.H"], "standard.toml", "machine.toml"
+    made = [
+        (matstd.trend("trend"), r"\d+ runs of .*: \d+ of \d+ charted quantities changed"),
+        (matstd.learn("run.csv", add=["thermal-lag(EZZ)"]), r"No law: .* \([\d.]+ µm rms\)"),
+        (matstd.calibrate("standard.toml", "cmm.csv"), r"\d+ features of .*, by [\d.]+ µm\Z"),
+        (matstd.simulate(*program), r"\d+ touches at .* deviations [\d.]+ µm rms, .* min"),
+        (matstd.uncertainty(["monday.csv", "friday.csv"], "standard.toml"), r".*\n.*U = [\d.]+ µm"),
+    ]
+    for found, words in made:
+        assert re.match(words, str(found)), str(found)
+        assert str(found) == repr(found)
+        assert len(str(found)) < 2000
+
+
 def poses():
     return np.zeros((2, 4)), np.full(2, 100.0)
 

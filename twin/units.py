@@ -48,21 +48,27 @@ typed with so many decimals. Rotations that were measured are no such thing."""
 FULL_TURN = 2.0 * math.pi + 0.01  # ends beyond are no angles in radians of one turn
 
 
-def meant_in_radians(low: float, high: float) -> tuple[float, float] | None:
+def meant_in_radians(
+    low: float, high: float, whole: float = WHOLE_DEGREES
+) -> tuple[float, float] | None:
     """The whole degrees that two numbers are in radians; None where they are no such thing.
+
+    Args:
+        whole: Degrees that they are multiples of.
 
     Example:
         >>> meant_in_radians(-1.92, 0.61), meant_in_radians(-5.0, 5.0), meant_in_radians(-0.5, 0.7)
         ((-110.0, 35.0), None, None)
     """
-    decimals = max(len(f"{v:.6f}".rstrip("0").partition(".")[2]) for v in (low, high))
-    if decimals < MIN_DECIMALS or max(-low, high) > FULL_TURN or not low < high:
+    decimals = [len(f"{v:.6f}".rstrip("0").partition(".")[2]) for v in (low, high)]
+    if max(decimals) < MIN_DECIMALS or max(-low, high) > FULL_TURN or not low < high:
         return None
-    allowed = max(DEGREES_ROUNDING, 0.5 * 10.0**-decimals / DEG)
-    ends = (low / DEG, high / DEG)
-    meant = tuple(WHOLE_DEGREES * round(end / WHOLE_DEGREES) for end in ends)
-    is_whole = all(abs(e - m) <= allowed for e, m in zip(ends, meant, strict=True))
-    return (meant[0], meant[1]) if is_whole else None
+    meant = [whole * round(v / DEG / whole) for v in (low, high)]
+    for v, m, count in zip((low, high), meant, decimals, strict=True):
+        # 0.26 beside -1.658 is rounded by itself
+        if abs(v / DEG - m) > max(DEGREES_ROUNDING, 0.5 * 10.0 ** -max(count, MIN_DECIMALS) / DEG):
+            return None
+    return meant[0], meant[1]
 
 
 def doubtful_length(length: float, known: Sequence[float] = (USUAL_TOOL_LENGTH,)) -> str | None:

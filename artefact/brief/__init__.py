@@ -9,6 +9,7 @@ from matstd.artefact.brief.brief import Brief as Brief
 from matstd.artefact.brief.brief import Goal as Goal
 from matstd.artefact.brief.brief import PlacementOptions as PlacementOptions
 from matstd.artefact.brief.brief import StudySettings as StudySettings
+from matstd.artefact.brief.contradictions import design_machine as design_machine
 from matstd.artefact.brief.project_file import project_text as project_text
 from matstd.artefact.brief.project_file import read_project as read_project
 from matstd.artefact.brief.standard_tables import FEWEST_PATCHES as FEWEST_PATCHES

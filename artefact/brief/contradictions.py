@@ -18,6 +18,8 @@ from matstd.artefact.brief.standard_tables import (
 )
 from matstd.artefact.brief.workshop_tables import WorkshopTable
 from matstd.twin.errors import BadFile
+from matstd.twin.files import read_machine
+from matstd.twin.machine import Chain
 from matstd.twin.units import KG_M3
 
 _IN_PROGRAMS = re.compile(r"[A-Za-z0-9_.+-]{1,24}")
@@ -27,6 +29,16 @@ _DENSITY_OFF, _EXPANSION_OFF = 0.2, 6e-6
 of one name differ by half of that."""
 
 MIN_SLOT_PITCH = 20.0  # smallest distance between two slots of a table, mm (ISO 299)
+
+
+def design_machine(path: str | Path, named_in: Path | None = None) -> Chain:
+    """Machine for which a standard can be designed: programs move it along X, Y and Z."""
+    chain = read_machine(path, named_in)
+    if not {"X", "Y", "Z"} <= set(chain.linear_axes):
+        found = f"linear axes {', '.join(chain.linear_axes) or 'none'}"
+        file = path if named_in is None else named_in.parent / path
+        raise BadFile(file, "chain", found, "X, Y and Z: a design and its programs move them")
+    return chain
 
 
 class Faults(list[BadFile]):

@@ -13,6 +13,7 @@ from matstd.artefact.brief.contradictions import (
     Faults,
     as_written,
     body_faults,
+    design_machine,
     material_faults,
     standard_faults,
     table_key,
@@ -41,7 +42,7 @@ from matstd.artefact.tool import Probe
 from matstd.artefact.worth import Calibration
 from matstd.sensitivity.montecarlo import MACHINES_A_BATCH
 from matstd.twin.errors import BadFile
-from matstd.twin.files import SetupTable, Table, checked, read_machine, read_toml, refuse_unit_slips
+from matstd.twin.files import SetupTable, Table, checked, read_toml, refuse_unit_slips
 from matstd.twin.machine import Chain
 from matstd.twin.record import Setup
 from matstd.twin.text import toml_value
@@ -198,7 +199,7 @@ def _doubtful_probes(table: ProjectTable, path: Path) -> Iterator[BadFile]:
 def _resolved(table: ProjectTable, path: Path, remarks: tuple[str, ...]) -> Brief:
     """The project in base units; raises BadFile with all contradictions of its keys."""
     machine_path = path.parent / table.machine
-    chain = read_machine(table.machine, named_in=path)
+    chain = design_machine(table.machine, named_in=path)
     wanted, shop = table.standard, table.workshop
     faults = Faults((*standard_faults(wanted, path), *material_faults(table.material, path)))
     with faults.collected():

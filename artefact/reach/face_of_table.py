@@ -48,13 +48,26 @@ def hangs(chain: Chain, T_table_artefact: Array) -> bool:
     )
 
 
-def standing_remarks(chain: Chain, T_table_artefact: Array) -> tuple[str, ...]:
-    """What is taken for granted of the face that carries the standard."""
+def standing_remarks(chain: Chain, T_table_artefact: Array, down: str) -> tuple[str, ...]:
+    """What is taken for granted of the face that carries the standard.
+
+    Args:
+        down: Direction of weight in machine coordinates, such as `-Z`.
+    """
     axis, face = _turns_about(chain), table_face(T_table_artefact)[:3, 2]
-    if axis is None or abs(float(axis @ face)) > _SAME_AXIS_COSINE:
+    if axis is None:
         return ()
+    is_upwards, letter = face.min() > -0.5, "XYZ"[int(np.argmax(np.abs(face)))]
+    way = f"{'+' if is_upwards else '-'}{letter}"
+    if abs(float(axis @ face)) > _SAME_AXIS_COSINE:
+        if letter in down:
+            return ()
+        return (
+            f"Weight pulls along {down}, and the face of {_innermost(chain)} on which the standard "
+            f"stands looks along {way}: that table is upright. Where it lies level, "
+            f'standard.down = "{"-" if is_upwards else "+"}{letter}"; the sag depends on it.',
+        )
     upright = _UPRIGHT[int(np.argmax(np.abs(axis)))]
-    way = f"{'-' if face.min() < -0.5 else '+'}{'XYZ'[int(np.argmax(np.abs(face)))]}"
     return (
         f"The standard stands on a face that looks along {way} of the table frame, as on an angle "
         f"plate, and {_innermost(chain)} turns about another direction. The table of "

@@ -29,6 +29,13 @@ class Datum:
 
     q: Array  # readings, (A,)
     length: float  # length of the tool, mm
+    # what the program's zero lies beyond them, out of the travels, (A,), mm
+    beyond: Array | float = 0.0
+
+    @property
+    def zero(self) -> Array:
+        """Readings of the program's zero, (A,); no axis needs to reach them."""
+        return np.asarray(self.q + self.beyond)
 
     def touches(self, errors: MachineErrors) -> Touches:
         """The pose as a record of one row, in the state of some errors."""
@@ -92,6 +99,10 @@ def deviation_after(errors: Disturbance, touches: Touches, added: Array) -> Arra
 
 
 def datum_of(chain: Chain, stated: dict[str, float], length: float) -> Datum:
-    """Datum at stated readings; an axis without one stands at zero, or next to it."""
-    q = [stated.get(a, float(np.clip(0.0, *chain.link(a).range))) for a in chain.axes]
-    return Datum(np.array(q), length)
+    """Datum at stated readings, or at the next that an axis reaches: of zero where none is stated.
+
+    Errors beyond a travel do not exist; a program's zero there does.
+    """
+    q = np.array([float(np.clip(stated.get(a, 0.0), *chain.link(a).range)) for a in chain.axes])
+    zero = np.array([stated.get(a, at) for a, at in zip(chain.axes, q.tolist(), strict=True)])
+    return Datum(q, length, zero - q)

@@ -26,7 +26,7 @@ class Frame:
     @cached_property
     def zero(self) -> Array:
         """The program's zero in the table frame, (3,), mm."""
-        return tip(self.chain, self.datum.q[None, :], self.datum.length)[0]
+        return tip(self.chain, self.datum.zero[None, :], self.datum.length)[0]
 
     @cached_property
     def linear(self) -> list[int]:
@@ -38,7 +38,7 @@ class Frame:
 
     def at_zero(self, length: float) -> Array:
         """Readings at the zero with a tool of that length, rotary axes as at the datum, (A,)."""
-        q = inverse_linear(self.chain, self.zero[None, :], self.datum.q[None, :], length)[0]
+        q = inverse_linear(self.chain, self.zero[None, :], self.datum.zero[None, :], length)[0]
         q[[k for k in range(len(q)) if k not in self.linear]] = 0.0
         return q
 

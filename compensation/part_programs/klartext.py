@@ -51,7 +51,7 @@ def _defined_once(blocks: list[str]) -> Iterator[str]:
 
 
 def listed(blocks: list[str], path: Path) -> str:
-    """The whole file, blocks numbered and the program named after it."""
+    """The whole file, blocks numbered and the program named after its file."""
     named = [re.sub(r"\A(BEGIN|END) PGM \S+", rf"\1 PGM {path.stem.upper()}", b) for b in blocks]
     text = "\n".join(f"{k} {block}" for k, block in enumerate(_defined_once(named)))
     return text.replace("\n", "\r\n") + "\r\n"

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
 
 import numpy as np
 
@@ -135,12 +136,19 @@ def _aheads(motions: Sequence[Motion]) -> IntArray:
 
 
 def compensated(
-    program: Program, errors: MachineErrors, head: Header, tolerance: float = TOLERANCE
+    program: Program,
+    errors: MachineErrors,
+    head: Header,
+    tolerance: float = TOLERANCE,
+    output: Path | None = None,
 ) -> Compensated:
     """Compensate a program.
 
     Every motion is divided until a straight line between two compensated points leaves less than
     the tolerance of what its middle would need: chords of arcs and of the error field alike.
+
+    Args:
+        output: The file that it becomes, whose name a Klartext program states; None for its own.
 
     Raises:
         OutsideTravel: A compensated point beyond the travel of an axis.
@@ -160,7 +168,7 @@ def compensated(
     spread = aligned(nominal[some], errors.columns(touches[some])) @ errors.root
     return Compensated(
         program=program,
-        text=_text(path, head, done),
+        text=_text(path, head, done, output or program.path),
         motion=which,
         elapsed=touches.time - errors.state.time,
         q=touches.q,
@@ -275,7 +283,7 @@ def _check_travel(path: ProgramPath, which: IntArray, q: Array) -> None:
         raise OutsideTravel(f"{message}; move the datum")
 
 
-def _text(path: ProgramPath, head: Header, done: Timed) -> str:
+def _text(path: ProgramPath, head: Header, done: Timed, output: Path) -> str:
     """The compensated program: its blocks in their order, every motion as its lines."""
     language = path.program.language
     begins = np.searchsorted(done.which, np.arange(len(path.motions) + 1)).tolist()
@@ -297,7 +305,7 @@ def _text(path: ProgramPath, head: Header, done: Timed) -> str:
             number += 1
     start = next(k for k, block in enumerate(blocks) if not language.OPENS.match(block))
     blocks[start:start] = [*map(language.comment, head.lines()), *language.BEGIN]
-    return str(language.listed(blocks, path.program.path))
+    return str(language.listed(blocks, output))
 
 
 def _shown(

@@ -92,7 +92,7 @@ def datum_text(chain: Chain, datum: Datum) -> str:
     """`X0 Y0 Z-200 B0 C0 L160`: readings in mm and degrees, tool length."""
     words = []
     for name in chain.programmed_axes:
-        reading = datum.q[chain.axis_index(name)] / chain.link(name).unit
+        reading = datum.zero[chain.axis_index(name)] / chain.link(name).unit
         words.append(f"{name}{reading + 0.0:.6g}")
     return " ".join([*words, f"L{datum.length:.6g}"])
 

@@ -58,6 +58,8 @@ def unit_mistake(fit: Fit) -> UnitMistake | None:
     """
     if not fit.model.effects or fit.run.touches.instrument.reads_angle:
         return None  # a cheap encoder is off by degrees, a good one by a part of a second
+    if int(fit.used.sum()) < 2 * (fit.X.shape[1] - len(fit.model.parameters)):
+        return None  # what so few touches leave of the set-ups is small in any unit
     measured, expected, stated = _typical_sizes(fit)
     what = _mistaken(fit, measured, expected, stated)
     if what is None:

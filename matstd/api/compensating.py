@@ -170,9 +170,12 @@ class Compensation(Displayed):
             progress: Called with what is being done.
 
         Raises:
+            BadArgument: A datum beyond the travel of its axis.
             Harmful: The tables of the only control, or of one that is named, would make the machine
                 worse.
         """
+        zero = dict(zip(self.errors.chain.axes, self.datum.zero.tolist(), strict=True))
+        within_travel(self.errors.chain, "datum", zero)  # tables hold on the lines through it
         asked, turned = _controls("control", controls), _controls("opposite", opposite)
         names = asked or list(FORMATS)
         done: list[VerifiedTables] = []
@@ -221,7 +224,7 @@ class Compensation(Displayed):
             refuse_to_overwrite(path, force)
         frame = Frame(self.errors.chain, self.datum)
         program = (options or ProgramOptions()).read(source, frame)
-        done = compensated(program, self.errors, self.header(), tolerance)
+        done = compensated(program, self.errors, self.header(), tolerance, output)
         write_whole(output, done.text)  # the first: where another run was faster, it is what stays
         write_trajectory(beside[0], done)
         save(draw_program(done), beside[1])
@@ -271,7 +274,8 @@ def compensate(
         model: A diagnosis, a fit, a model, the path of a model file; or that of a machine file.
         errors: Error file of a machine file.
         tool_length: From the gauge point to the tip of the tool that stands at the datum, mm.
-        datum: Readings where the preset is taken, mm and rad; others are zero.
+        datum: Readings of the program's zero, mm and rad; others are zero. That of a linear axis
+            may lie beyond its travel for programs, not for tables.
         within: Workspace that is judged, mm and rad; other axes over their travel.
         state: Time, temperatures, speed and load of the machine; one just switched on without it.
         add: Further errors with their sizes, such as `"backlash(X)=3um"`.
@@ -309,7 +313,7 @@ def compensate(
     title = model.title if isinstance(model, Diagnosis) else Path(name).name
     out = Compensation(
         errors=known,
-        datum=datum_of(chain, within_travel(chain, "datum", datum or {}), tool_length),
+        datum=stated_datum(chain, datum or {}, tool_length),
         poses=sample_workspace(chain, _limits(chain, within or {})),
         model=hashed(b"".join([content, *laws])),
         title=title,
@@ -347,15 +351,21 @@ def checked_length(tool_length: float, probes: Sequence[float] = ()) -> None:
     raise BadArgument("tool_length", f"{tool_length:g}", f"mm; {question}{beside}")
 
 
-def within_travel(chain: Chain, argument: str, readings: Mapping[str, float]) -> dict[str, float]:
-    """Readings by axis, mm and rad; raises BadArgument beyond the travel of an axis."""
+def stated_datum(chain: Chain, readings: Mapping[str, float], tool_length: float) -> Datum:
+    """Datum at stated readings; raises BadArgument for a rotary axis beyond its travel."""
+    turned = {a: v for a, v in readings.items() if a not in chain.linear_axes}
+    within_travel(chain, "datum", turned)
+    return datum_of(chain, dict(readings), tool_length)
+
+
+def within_travel(chain: Chain, argument: str, readings: Mapping[str, float]) -> None:
+    """Raise BadArgument for a reading, mm or rad, beyond the travel of its axis."""
     for name, value in readings.items():
         link = chain.links[chain.link_index(chain.axes[chain.axis_index(name)])]
         low, high = link.range
         if not low <= value <= high:
             expected = f"{low / link.unit:g} to {high / link.unit:g}, the travel of {name}"
             raise BadArgument(argument, f"{name}={value / link.unit:g}", expected)
-    return dict(readings)
 
 
 def _limits(

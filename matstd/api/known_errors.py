@@ -71,7 +71,9 @@ def drives_stated(model: str) -> Iterator[None]:
             "expected --temperature, --rpm or --value for all that the model follows, in Python "
             "State(temperature=..., spindle_rpm=..., value=...)"
         )
-        raise DesignError(f"{model}: {error}; {expected}") from error
+        raise DesignError(
+            f"{model}: {str(error).removesuffix('; there is none')}; {expected}"
+        ) from error
 
 
 def with_added(errors: MachineErrors, text: str) -> MachineErrors:

@@ -29,6 +29,7 @@ from matstd.options import GEOMETRY
 from matstd.report.laws import effect_text, law_sentence, no_law_sentence, write_law_page
 from matstd.report.run_view import Framed, learnt_view
 from matstd.report.words import remark_sentence
+from matstd.twin.display import Displayed
 from matstd.twin.errors import BadArgument
 from matstd.twin.files import write_whole
 from matstd.twin.frames import Array
@@ -39,7 +40,7 @@ from matstd.twin.words import deviations_in
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class LearntLaws(Saveable, laws.Learning):
+class LearntLaws(Saveable, Displayed, laws.Learning):
     """Laws that explain what a model leaves of a run; `learn` returns it.
 
     Example:

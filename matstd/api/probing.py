@@ -27,7 +27,7 @@ from matstd.probe_paths.language import read_dialect
 from matstd.report.words import ball_lines, remark_sentence
 from matstd.sensitivity.population import Population, drawn_errors
 from matstd.twin.compute import Progress, silent
-from matstd.twin.display import Displayed
+from matstd.twin.display import Displayed, text
 from matstd.twin.errors import BadArgument, BadFile, BadValue
 from matstd.twin.files import SensorRecord, read_errors, read_sensors, write_run
 from matstd.twin.files.whole import write_into
@@ -35,7 +35,7 @@ from matstd.twin.frames import fixed_xyz, pose
 from matstd.twin.library import parse_sized_effect, parse_sizes
 from matstd.twin.machine import Chain
 from matstd.twin.record import Run, StatedBody, with_body
-from matstd.twin.units import UM
+from matstd.twin.units import MINUTE, UM
 
 T_NORMAL = 20.0  # what the control reads of a sensor that no record has, degC
 
@@ -158,6 +158,12 @@ class Simulation(Displayed):
         # after it: a run that comes second does not touch the logs of the first
         if logs is not None:
             save_logs(logs, self.campaign.logs, force)
+
+
+@text.register
+def _text(found: Simulation) -> str:
+    minutes = found.campaign.runs[-1].end / MINUTE
+    return "\n- ".join([f"{found.run!r}, in {minutes:.0f} min", *found.remarks])
 
 
 def simulate(

@@ -7,13 +7,13 @@ from pathlib import Path
 
 import numpy as np
 
-from matstd.api.compensating import PROBING, ProgramOptions, checked_length, within_travel
+from matstd.api.compensating import PROBING, ProgramOptions, checked_length, stated_datum
 from matstd.api.known_errors import drives_stated, machine_errors, with_added, with_unknowns
 from matstd.api.machines import chain_of
 from matstd.api.standards import standard_of
 from matstd.artefact.body import Standard
 from matstd.artefact.reach import Workshop
-from matstd.compensation.field import Datum, MachineErrors, State, datum_of
+from matstd.compensation.field import Datum, MachineErrors, State
 from matstd.compensation.part_programs import Frame
 from matstd.diagnosis.files import SavedModel, read_model
 from matstd.diagnosis.fit import Fit
@@ -136,7 +136,7 @@ def show(
     checked_length(tool_length)
     progress("errors", 0, 1)
     known, source, remarks = _known(chain, errors, model, add, state or State())
-    preset = datum_of(chain, within_travel(chain, "datum", datum or {}), tool_length)
+    preset = stated_datum(chain, datum or {}, tool_length)
     files = [program] if isinstance(program, str | Path) else list(program)
     if standard is not None and not files:
         raise BadArgument("standard", str(standard), "probing programs (--program) beside it")
@@ -165,7 +165,7 @@ def show(
             replaced=sorted(replaced),
             from_files=from_files,
             program=played,
-            datum=(preset.q, preset.length),
+            datum=(preset.zero, preset.length),
             remarks=remarks,
         )
     )

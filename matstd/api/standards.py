@@ -67,7 +67,7 @@ def standard_of(standard: Standard | str | Path) -> Standard:
 
 
 @dataclass(frozen=True, repr=False)
-class Calibration(CalibrationFit, Displayed):
+class Calibration(Displayed, CalibrationFit):
     """A calibrated standard and what its calibration found; `calibrate` returns it.
 
     Example:

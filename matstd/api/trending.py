@@ -84,13 +84,15 @@ def trend(
     """Control charts of one machine over several runs: what changed, when, and how certainly.
 
     Args:
-        runs: A folder of run files, or of diagnoses or model files; or runs, or their paths. The
-            date of a run is that of its head, else one in its name, `2031-05-06.csv`.
+        runs: Runs, their files, model files, or folders of run files, of diagnoses or of model
+            files; runs or models, not both. The date of a run is that of its head, else one in its
+            name, `2031-05-06.csv`.
         add: Effects that are fitted to every run beside the geometry, by name.
         progress: Called with what is being done.
 
     Raises:
         BadFile: A file that cannot be read.
+        BadArgument: Runs and models.
         DesignError: Runs of several machines or standards, or one twice.
         NotEnoughData: Fewer than three runs.
 
@@ -100,24 +102,29 @@ def trend(
         >>> found.occasions[step.after].name
         '2026-02-09'
     """
+    named = [runs] if isinstance(runs, str | Path) else runs
     given: list[Run | str] = []
     left_out: list[str] = []
-    title = "runs"
-    if isinstance(runs, str | Path) and Path(runs).is_dir():
-        files, left_out = _of_folder(Path(runs))
-        given, title = list(files), Path(runs).resolve().name
-    elif isinstance(runs, str | Path):
-        raise BadArgument("runs", str(runs), "a folder of runs or models, or several files")
-    else:
-        given = [one if isinstance(one, Run) else str(one) for one in runs]
+    for one in named:
+        if isinstance(one, Run):
+            given.append(one)
+        elif Path(one).is_dir():
+            files, others = _of_folder(Path(one))
+            given += files
+            left_out += others
+        else:
+            given.append(str(one))
+    places = [str(one) for one in named if not isinstance(one, Run)]
     if len(given) < MIN_OCCASIONS:
-        where = f"{runs}: " if isinstance(runs, str | Path) else ""
         raise NotEnoughData(
-            f"{where}{len(given)} runs or models, expected at least {MIN_OCCASIONS}; two runs are "
-            "compared by matstd diagnose FIRST.csv SECOND.csv"
+            f"{', '.join(places) or 'runs'}: {len(given)} runs or models, expected at least "
+            f"{MIN_OCCASIONS}; two runs are compared by matstd diagnose FIRST.csv SECOND.csv"
         )
     # model files hold their estimates: nothing is fitted again
-    is_of_models = all(isinstance(one, str) and one.endswith(".toml") for one in given)
+    models = [one for one in given if isinstance(one, str) and one.endswith(".toml")]
+    is_of_models = len(models) == len(given)
+    if models and not is_of_models:
+        raise BadArgument("runs", models[0], "runs alone, or models alone")
     made = _of_models(given) if is_of_models else _of_runs(given, add, progress)
     occasions = dated(made)
     found = history(occasions)
@@ -126,7 +133,7 @@ def trend(
     return extended(
         Trend,
         found,
-        title=title,
+        title=Path(places[0]).resolve().name if len(places) == len(named) == 1 else "runs",
         paths=tuple(p for p in paths if isinstance(p, str)),
         left_out=tuple(left_out),
         is_of_models=is_of_models,

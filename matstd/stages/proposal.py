@@ -12,13 +12,12 @@ from pathlib import Path
 
 import numpy as np
 
-from matstd.artefact.brief import Brief, base_of, project_text, read_project
+from matstd.artefact.brief import Brief, base_of, design_machine, project_text, read_project
 from matstd.artefact.feasibility import Feasibility, check_seat, feasibility, stands
 from matstd.artefact.reach import TABLE, Solid
 from matstd.artefact.seat import base_corners, over_edge
 from matstd.twin.compute import Progress, silent
 from matstd.twin.errors import BadFile, DesignError, NotBuildable, NotReachable
-from matstd.twin.files import read_machine
 from matstd.twin.frames import fixed_xyz
 from matstd.twin.machine import Chain, linear_motion, tip
 from matstd.twin.record import Setup
@@ -104,7 +103,7 @@ def propose(
     Raises:
         DesignError: A machine on which no standard can be probed, and what binds.
     """
-    chain = read_machine(machine)
+    chain = design_machine(machine)
     size = table or (_assumed_table(chain),)
     if not _bases(size, USUAL):
         corners = np.abs(base_corners(base_of((LEAST, LEAST)), np.eye(4))[:, :2])
@@ -273,6 +272,12 @@ def _down(turn: tuple[float, ...]) -> dict[str, object]:
     return {} if not any(turn) else {"down": "-Y"}
 
 
+def _one_turn(low: float, high: float) -> tuple[float, float]:
+    """A travel, or of a longer one a full turn, about zero where there is one, rad."""
+    end = min(max(low, -np.pi) + 2.0 * np.pi, high)
+    return max(low, end - 2.0 * np.pi), end
+
+
 def workspace(
     chain: Chain, base: float, height: float, length: float, turn: tuple[float, ...]
 ) -> Iterator[tuple[str, list[float]]]:
@@ -288,7 +293,7 @@ def workspace(
     corners = np.array(list(product((-half, half), (-half, half), (0.0, height))))
     corners = corners @ fixed_xyz(np.array(turn) * DEG).T
     rotary = chain.rotary_axes
-    ends = {a: np.clip(chain.link(a).range, -180.0 * DEG, 180.0 * DEG) for a in rotary}
+    ends = {a: _one_turn(*chain.link(a).range) for a in rotary}
     poses = list(product(*(np.linspace(ends[a][0], ends[a][1], 7) for a in rotary)))
     q = np.zeros((len(poses) * len(corners), len(chain.axes)))
     q[:, [chain.axis_index(a) for a in rotary]] = np.repeat(poses, len(corners), axis=0)
@@ -297,7 +302,7 @@ def workspace(
     for name in chain.programmed_axes:
         low, high = chain.link(name).range
         if name in rotary:
-            low, high = ends[name] / DEG
+            low, high = (end / DEG for end in ends[name])
         else:
             inside = np.clip(found[:, chain.axis_index(name)], low, high)
             low, high = inside.min(), inside.max()

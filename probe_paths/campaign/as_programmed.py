@@ -11,10 +11,12 @@ from datetime import timedelta
 import numpy as np
 
 from matstd.probe_paths.control import UNDATED, LogPart, ProbeStep, ReadProgram
+from matstd.probe_paths.language import LANGUAGES, Label, interlocks
+from matstd.probe_paths.plan import ProgramFrame
 from matstd.twin.errors import BadFile
 from matstd.twin.machine import Chain
 from matstd.twin.record import Run
-from matstd.twin.units import DEG
+from matstd.twin.units import DEG, NM
 
 LONGEST_CAMPAIGN = timedelta(days=30)
 """Longest time between the logs of one evaluation: a standard stays clamped for days."""
@@ -28,18 +30,31 @@ SAME_ANGLE = 0.05
 """Largest deviation of a rotary axis from its programmed position, degrees; as in the programs."""
 
 
-def check_numbers(parts: Sequence[LogPart]) -> None:
-    """Raise BadFile for a stopped clock, rounded positions, or logs of different campaigns."""
+def check_numbers(parts: Sequence[LogPart], chain: Chain) -> None:
+    """Raise BadFile for a stopped clock, rounded positions, another probe, different campaigns."""
     dated = sorted((p for p in parts if p.begin.year != UNDATED.year), key=lambda p: p.begin)
     if dated and dated[-1].begin - dated[0].begin > LONGEST_CAMPAIGN:
         first, last = dated[0], dated[-1]
         found = f"{first.begin.date()}, where {last.path.name} has {last.begin.date()}"
         expected = f"logs of one campaign, within {LONGEST_CAMPAIGN.days} days; evaluate them apart"
         raise BadFile(first.path, "DATE", found, f"{expected}, or correct the clock of the control")
-    for part in (p for p in parts if len(p.number) >= MIN_TOUCHES):
-        _check_steps(part)
+    for part in parts:
+        _check_probe(part, chain)
+        if len(part.number) >= MIN_TOUCHES:
+            _check_steps(part)
     for key in ("tool", "preset"):
         _check_common(key, [p for p in parts if getattr(p, key) is not None])
+
+
+def _check_probe(part: LogPart, chain: Chain) -> None:
+    """Refuse a calibration at which the program would have stopped."""
+    frame = ProgramFrame(chain, part.heading.probe)
+    found = {Label.OTHER_PROBE: part.tool_length, Label.RADIUS: part.radius}
+    for test in interlocks(LANGUAGES["klartext"], frame):
+        if test.label in found and abs(found[test.label] - test.planned) > test.limit + NM:
+            stated = f"{found[test.label]:g} mm as {test.what}"
+            expected = f"{test.planned:g} within {test.limit:g} mm, the probe of {part.program}"
+            raise BadFile(part.path, "R, L", stated, expected)
 
 
 def _check_steps(part: LogPart) -> None:

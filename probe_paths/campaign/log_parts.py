@@ -83,7 +83,7 @@ def checked_parts(
         BadFile: A log of another machine, nothing but such touches in a part, or numbers that
             cannot be right (`check_numbers`).
     """
-    check_numbers(parts)
+    check_numbers(parts, chain)
     kept: list[LogPart] = []
     remarks = [f"{part.path}: {remark}" for part in parts for remark in part.remarks]
     count = len(standard.features)

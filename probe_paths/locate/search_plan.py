@@ -104,7 +104,7 @@ def _places(
         raise NotReachable(
             f"a search from above finds no places where a stylus of {begins[0]:g} mm comes down to "
             f"something wherever the standard stands within {spread.distance:g} mm and "
-            f"{spread.angle / DEG:g} degrees: state a smaller spread"
+            f"{spread.angle / DEG:g} degrees: a longer stylus finds more"
         )
     rows = _far_apart(place, TOUCHES)
     at = tuple(ij[rows].T)
@@ -197,7 +197,8 @@ def _refuse_out_of_travel_or_collision(plan: TouchPlan, path: float) -> None:
     if is_out or plan.visits[0].height > plan.top:
         raise NotReachable(
             f"a search from above would go from Z {plan.start[:, z].max():.0f} to "
-            f"{end[:, z].min():.0f} mm and is out of travel: state a smaller spread"
+            f"{end[:, z].min():.0f} mm, out of the travel {low[z]:.0f} to {high[z]:.0f}: a probe "
+            "of another length begins elsewhere"
         )
     # the standard is spared, as the touches are to meet it
     stands = [solid.name for solid in plan.options.workshop.solids[1:]]

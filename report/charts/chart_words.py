@@ -16,6 +16,7 @@ from matstd.diagnosis.charts import (
 from matstd.diagnosis.geometry import Estimate
 from matstd.report.geometry import estimate_words, quantity_name, shown_unit
 from matstd.report.numbers import digits, p_value, percent, plural, signed
+from matstd.twin.display import text
 
 WEEK = 7.0  # days of the unit of time in which a drift is reported
 BY_CHANCE = 0.0027  # share of normal values beyond three standard deviations
@@ -37,6 +38,11 @@ def history_sentence(found: History) -> str:
     if changed:
         return f"{what}: {changed} of {every} charted quantities changed beyond chance."
     return f"{what}: none of {every} charted quantities changed beyond chance."
+
+
+@text.register
+def _text(found: History) -> str:
+    return "\n- ".join([history_sentence(found), *history_lines(found)])
 
 
 def _period(found: History) -> str:

@@ -203,7 +203,9 @@ def _tolerance_figure(design: Design, tolerance: float) -> KeyFigure:
 def _opening(design: Design, folder: Path, remarks: Sequence[str]) -> Section:
     """What was designed, and what its user has to know first."""
     chain, body, plan = design.brief.chain, design.placement.standard, design.plan
-    assumed = [*chain.remarks, *standing_remarks(chain, design.brief.setup.T_table_artefact)]
+    brief = design.brief
+    standing = standing_remarks(chain, brief.setup.T_table_artefact, brief.down)
+    assumed = [*chain.remarks, *standing]
     marks = (folder / "machine.toml").read_text(encoding="utf-8").count("# PLACEHOLDER")
     if marks:
         assumed.append(

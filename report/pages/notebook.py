@@ -15,19 +15,24 @@ import numpy as np
 
 from matstd.artefact.body import Standard
 from matstd.artefact.brief import Brief
+from matstd.artefact.certify import CalibrationFit
 from matstd.artefact.compare import IdentifiabilityReport
 from matstd.diagnosis.answer import Comparison, Diagnosis
 from matstd.diagnosis.files import SavedModel
 from matstd.diagnosis.fit import Fit
+from matstd.diagnosis.laws import Learning
 from matstd.diagnosis.residual import rank_variables
 from matstd.report.geometry import change_sentences
 from matstd.report.identifiability import gist
+from matstd.report.laws import law_sentence, no_law_sentence
 from matstd.report.layout import picture
 from matstd.report.maps import draw_regions
-from matstd.report.numbers import microns
+from matstd.report.numbers import microns, sentence
 from matstd.report.pages.design_result import Design
+from matstd.report.pages.uncertainty_page import Budgets
 from matstd.report.plots import draw_fall, draw_over_variables
 from matstd.report.style import save
+from matstd.report.task import calibration_lines
 from matstd.report.words import comparison_sentence, features_words, study_words, verdict_sentence
 from matstd.sensitivity.shares import regions
 from matstd.sensitivity.study import Study
@@ -71,6 +76,18 @@ def _diagnosis(found: Diagnosis) -> str:
 text.register(Study, lambda study: "\n".join(study_words(study)))
 text.register(IdentifiabilityReport, lambda known: f"{gist(known)}.")
 text.register(Chain, lambda chain: f"{chain.name}: {chain.notation}")
+text.register(CalibrationFit, lambda found: calibration_lines(found)[0])
+
+
+@text.register
+def _learning(learning: Learning) -> str:
+    words = [sentence(law_sentence(learning, one)) for one in learning.laws]
+    return "\n".join(words or [no_law_sentence(learning)])
+
+
+@text.register
+def _budgets(made: Budgets) -> str:
+    return "\n- ".join([f"{made.task.name}: {made.sentence}", *made.lines])
 
 
 @text.register

@@ -9,7 +9,7 @@ import numpy as np
 from matstd.artefact.reach import standing_remarks, table_face
 from matstd.compensation.field import MachineErrors
 from matstd.probe_paths.campaign import setup_tolerance
-from matstd.probe_paths.language import LANGUAGES, Label, Q, interlocks, turn_tests
+from matstd.probe_paths.language import LANGUAGES, Dialect, Label, Q, interlocks, turn_tests
 from matstd.probe_paths.locate import Companions
 from matstd.probe_paths.plan import SMALLEST_GAP, Heading, TouchPlan, calibration_hash
 from matstd.probe_paths.stations import Station
@@ -33,6 +33,13 @@ _REMEDY = {
     Label.ZERO_1: "the rotary axis in the preset's row",
     Label.ZERO_2: "the rotary axis in the preset's row",
 }
+_REMEDY_GCODE = {
+    Label.RADIUS: "diameter of the ball in the tool table; another stylus",
+    Label.ROTATION: "rotation of the preset (`G10 L2 R`): zero",
+    Label.ZERO_1: "offset of the rotary axis in the preset: zero",
+    Label.ZERO_2: "offset of the rotary axis in the preset: zero",
+}
+"""Where LinuxCNC keeps what iTNC has in columns of tables."""
 _PRESETS = (Label.PRESET_X, Label.PRESET_Y, Label.PRESET_Z)
 _CAMPAIGN = (
     "Stations in their order; all logs are evaluated together. Between set-ups the standard is "
@@ -51,8 +58,19 @@ _BEYOND = (
 _SEARCH = "Where the standard may stand elsewhere, a search program finds its place."
 _NO_SEARCH = "No program finds the place of the standard: align it within the offsets stated here."
 _ALARMS = (
-    "A program that stops shows the label at which it stopped. Before number {missed} can occur, "
-    "nothing has been touched"
+    "A program that stops shows {shown}. Before number {missed} can occur, nothing has been touched"
+)
+_LABEL_SHOWN = "the label at which it stopped"
+_SUBPROGRAM_SHOWN = "1014 (no contact) or 1011, and the subprogram `O` of the alarm in its listing"
+_LOAD = (
+    "Load programs and masks. The control must not mark any block as an error: where it does, "
+    "write the programs with the words of its software (`--control`, a dialect)."
+)
+_LOAD_GCODE = (
+    "Prepare LinuxCNC: probe at `motion.probe-input`, seconds of the day at `motion.analog-in-00`, "
+    "the date (20310506) at `motion.analog-in-01`, `[AXIS_Z] MAX_LIMIT` in the INI file, and "
+    "`[RS274NGC] INI_VARS` not 0. Load the programs. Logs appear in the folder in which LinuxCNC "
+    "was started."
 )
 _COMMON_STEPS = (
     "First run in single block with the override low. While the probe moves to its first touch, "
@@ -190,7 +208,7 @@ def _probe(station: Station) -> list[Section]:
             f"{probe.tool_length:.4f}",
         ],
         ["radius of the ball in mm", f"{probe.radius:.4f}"],
-        ["preset", f"row {dialect.preset}: table centre{_zero(station.plan)}, no basic rotation"],
+        ["preset", f"{_preset(dialect)}: table centre{_zero(station.plan)}, no basic rotation"],
     ]
     angle = (
         "0°, by every program (`M19`); calibrate the probe at the same angle"
@@ -211,6 +229,15 @@ def _probe(station: Station) -> list[Section]:
     ]
 
 
+def _is_gcode(dialect: Dialect) -> bool:
+    return dialect.language == "gcode"
+
+
+def _preset(dialect: Dialect) -> str:
+    """The preset as the control names it."""
+    return f"G{53 + dialect.preset}" if _is_gcode(dialect) else f"row {dialect.preset}"
+
+
 def _run(
     station: Station, others: Companions, playback: str, conditions: Sequence[str]
 ) -> list[Section]:
@@ -229,24 +256,24 @@ def _run(
             notes=[" ".join(conditions)] if conditions else [],
             table=Table(("program", "touches", "about, in min"), rows),
         ),
-        Section(sentences=[shown], items=_steps(others), is_ordered=True),
+        Section(sentences=[shown], items=_steps(others, station.dialect), is_ordered=True),
     ]
 
 
-def _steps(others: Companions) -> list[str]:
+def _steps(others: Companions, dialect: Dialect) -> list[str]:
     dry = others.dry_run.programs[0]
+    visit = LANGUAGES[dialect.language].parameter(Q.START)
     return [
-        "Load programs and masks. The control must not mark any block as an error: where it does, "
-        "write the programs with the words of its software (`--control`, a dialect).",
+        _LOAD_GCODE if _is_gcode(dialect) else _LOAD,
         "Calibrate the probe; clean standard and ball.",
         _search_step(others),
-        *_first_steps(others),
+        *_first_steps(others, dialect),
         f"Run `{dry.name}` from the folder of this sheet: all motions of the programs, up to "
         f"{others.raised:g} mm higher and without a touch, {dry.duration / MINUTE:.0f} min.",
         _ball_step(others),
         *_COMMON_STEPS,
         f"Keep the log of every program, including one that stopped. Restart that program at the "
-        f"visit in which it stopped: `Q{int(Q.START)}` in its head is the number of that visit "
+        f"visit in which it stopped: `{visit}` in its head is the number of that visit "
         "(the program still turns to the visits before it, without a touch). Give all its logs to "
         "`matstd evaluate`.",
     ]
@@ -265,21 +292,24 @@ def _search_step(others: Companions) -> str:
     )
 
 
-def _first_steps(others: Companions) -> list[str]:
+def _first_steps(others: Companions, dialect: Dialect) -> list[str]:
     """The commissioning program, where the control may need it."""
     if others.first is None:
         missing = f"There is no commissioning program to try the control with: {others.no_first}."
         return [missing] if others.no_first else []
     first = others.first.programs[0]
+    stop, missed = "label 93", "`FN 14: ERROR= 1014`"
+    if _is_gcode(dialect):
+        stop, missed = "subprogram `O93`", "message 1014"
     return [
         f"On a control that has not run these programs before: first run `{first.name}` from the "
         "folder of this sheet, with the standard in its pose, in single block with the override "
         f"low. It has {first.blocks} blocks with every word that the other programs use: one touch "
         "in the air, after which it must continue, and one on a ball. From its log, "
-        "`matstd evaluate` determines which Z the control returns. If it stops at label 93, "
+        f"`matstd evaluate` determines which Z the control returns. If it stops at {stop}, "
         "upper end of Z, length of the tool, basic rotation or preset differ from those below, or "
-        "a cycle of an earlier job is active; at "
-        "`FN 14: ERROR= 1014` the control returns another touch status than the programs expect."
+        f"a cycle of an earlier job is active; at {missed} the control returns another touch "
+        "status than the programs expect."
     ]
 
 
@@ -303,21 +333,24 @@ def _alarms(plan: TouchPlan, station: Station) -> Section:
     tests = [*interlocks(language, plan.frame), *turn_tests(language, plan.frame)]
     lost = "a touch met nothing; Z is up, the log contains all touches so far"
     rows = [[str(missed), lost, "", "pose of the standard; is the probe switched on?"]]
-    remedies = _REMEDY | _of_presets(plan)
+    is_gcode = _is_gcode(station.dialect)
+    remedies = _REMEDY | (_REMEDY_GCODE if is_gcode else {}) | _of_presets(plan, station.dialect)
+    shown = _SUBPROGRAM_SHOWN if is_gcode else _LABEL_SHOWN
     for label in dict.fromkeys(test.label for test in tests):
         own = [test for test in tests if test.label == label]
         what = "; ".join(dict.fromkeys(test.what for test in own))
         limits = "; ".join(dict.fromkeys(f"{test.limit:g}" for test in own))
         rows.append([str(int(label)), what, limits, remedies[label]])
     columns = ("alarm", "test", "tolerance", "check")
-    return Section("Alarms", table=Table(columns, rows, _ALARMS.format(missed=missed)))
+    return Section("Alarms", table=Table(columns, rows, _ALARMS.format(missed=missed, shown=shown)))
 
 
-def _of_presets(plan: TouchPlan) -> dict[Label, str]:
+def _of_presets(plan: TouchPlan, dialect: Dialect) -> dict[Label, str]:
     """What to check of the preset: the face in the direction in which it looks, else the centre."""
     out_of_face = np.abs(table_face(plan.setup.T_table_artefact)[:3, 2]) > 0.5
+    where = _preset(dialect) if _is_gcode(dialect) else "the preset's row"
     return {
-        label: f"{letter} of the preset's row: the {'face' if is_face else 'centre'} of the table"
+        label: f"{letter} of {where}: the {'face' if is_face else 'centre'} of the table"
         for label, letter, is_face in zip(_PRESETS, "XYZ", out_of_face, strict=True)
     }
 

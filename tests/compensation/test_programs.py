@@ -7,12 +7,13 @@ import pytest
 from bench import LENGTH, oracle_tip, part_program, readings
 from rs274 import is_there, moves
 
+from matstd import compensate
 from matstd.compensation.field import MachineErrors, State
 from matstd.compensation.part_programs import Keep
 from matstd.compensation.programs import compensated
 from matstd.compensation.programs.path import ProgramPath
 from matstd.compensation.tables import header_of
-from matstd.twin.errors import BadFile, OutsideTravel
+from matstd.twin.errors import BadArgument, BadFile, OutsideTravel
 from matstd.twin.library import parse_effect
 from matstd.twin.units import DEG, NM, UM
 
@@ -317,6 +318,23 @@ def test_what_leaves_its_travel_is_refused(known, bench_chain, frame, head, tmp_
     part = part_program("G0 X0 Y0 Z0\nG1 X400 F100\n", frame, tmp_path, "a.ngc")
     with pytest.raises(OutsideTravel, match="line 2: compensated, X leaves its travel"):
         compensated(part, far, head)
+
+
+def test_a_zero_beyond_a_travel_shifts_the_coordinates_alone(bench, errors_file, tmp_path):
+    """X travels from -400: a zero 30 mm beyond has the errors of the end, and 30 mm more in X."""
+    found, machine = {}, {}
+    for name, zero in {"far": -430.0, "near": -400.0}.items():
+        source = tmp_path / f"{name}.part.H"
+        datum = {"X": zero, "Z": -200.0}
+        machine[name] = compensate(bench, errors_file, tool_length=LENGTH, datum=datum)
+        text = "BEGIN PGM PART MM\nTOOL CALL 3 Z\nL X{:+g} Y+0 Z+9 FMAX\nL X{:+g} B-20 F900\nM30\n"
+        source.write_text(text.format(100.0 - zero, 180.0 - zero))
+        found[name] = machine[name].program(source, tmp_path / f"{name}.H").text
+    rows = [coordinates(found[name]) for name in ("far", "near")]
+    np.testing.assert_allclose(rows[0] - rows[1], np.tile([30.0, 0, 0, 0, 0], (len(rows[0]), 1)))
+    assert found["far"].startswith("0 BEGIN PGM FAR MM")  # the control finds a program by its file
+    with pytest.raises(BadArgument, match="X=-430: expected -400 to 400, the travel of X"):
+        machine["far"].tables(tmp_path / "tables")
 
 
 def test_command(bench, errors_file, tmp_path, answer, refusal):

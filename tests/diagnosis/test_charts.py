@@ -3,9 +3,11 @@
 import csv
 import io
 import json
+import shutil
 from dataclasses import replace
 from datetime import datetime
 from itertools import combinations
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,6 +15,7 @@ from simulator_experiment import MACHINES
 from simulator_runs import read_runs, simulated_runs
 from unchanged import table_text
 
+from matstd import trend
 from matstd.cli import main
 from matstd.diagnosis.accuracy import probed_volume
 from matstd.diagnosis.charts import Charted, LimitSource, Occasion, Overall, history
@@ -198,6 +201,18 @@ def test_nothing_is_found_where_nothing_changed(tmp_path, capsys):
     assert {"EX0C", "EC0Y", "EXX", "backlash(B)"} <= {c["symbol"] for c in found["charts"]}
 
 
+def test_runs_of_folders_and_files_are_one_course(jumped, tmp_path):
+    """Two runs in a folder, one in another, and one by its path."""
+    for i, place in enumerate(["spring", "spring", "autumn", "."], start=2):
+        (tmp_path / place).mkdir(exist_ok=True)
+        for name in ("machine.toml", f"2031-05-0{i}.csv"):
+            shutil.copy(jumped / name, tmp_path / place / name)
+    places = [tmp_path / name for name in ("autumn", "spring", "2031-05-05.csv")]
+    found = trend(places)
+    assert [one.name for one in found.occasions] == [f"2031-05-0{i}" for i in (2, 3, 4, 5)]
+    assert [Path(p).parent.name for p in found.paths[:3]] == ["spring", "spring", "autumn"]
+
+
 def test_a_slow_drift_of_squareness_is_a_drift(tmp_path):
     """Every fourth day of a month, 5 µrad more each time: 1.25 µrad a day."""
     days = [f"2031-05-{1 + 4 * i:02d}" for i in range(8)]
@@ -239,6 +254,8 @@ def test_what_is_not_one_machine_on_one_standard_is_refused(jumped, tmp_path, ca
     assert "the same measurements as" in refused(capsys, tmp_path, "-o", out)
     copies[2].unlink()
     assert "expected at least 3" in refused(capsys, tmp_path, "-o", out)
+    named = refused(capsys, tmp_path, copies[0].with_suffix(".toml"), "-o", out)
+    assert "a.toml: expected runs alone, or models alone" in named
     assert not out.exists()
 
 

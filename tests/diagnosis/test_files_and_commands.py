@@ -427,6 +427,15 @@ def test_good_and_bad_machines_are_not_mixed_units(case, factor) -> None:
     assert stated is None
 
 
+def test_what_a_set_up_takes_up_is_no_unit(case) -> None:
+    """Of eight touches six go into the set-up: two that happen to agree say nothing of a unit."""
+    run = case(2, "hsm600u").run
+    run = replace(run, deviation=0.01 * run.deviation)  # as deviations in mm would be
+    model = ordinary_model(run.touches.chain)
+    assert unit_mistake(fit_run(run[:8], model)) is None
+    assert unit_mistake(fit_run(run[:40], model)) is not None
+
+
 def test_a_run_pasted_many_times_counts_once(case) -> None:
     """With its own times every copy looks like more evidence; the numbers do not."""
     run = case(2, "hsm600u").run

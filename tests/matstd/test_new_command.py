@@ -182,6 +182,38 @@ def test_the_workspace_is_what_brings_the_tool_over_the_standard():
 
 
 @pytest.mark.parametrize(
+    ("travel", "covered"),
+    [
+        ((-30.0, 300.0), [-30.0, 300.0]),
+        ((-200.0, 170.0), [-190.0, 170.0]),
+        ((0.0, 360.0), [0.0, 360.0]),
+        ((-360.0, 360.0), [-180.0, 180.0]),
+        ((-9999.0, 9999.0), [-180.0, 180.0]),
+        ((200.0, 400.0), [200.0, 400.0]),
+        ((-95.0, 15.0), [-95.0, 15.0]),
+    ],
+)
+def test_every_direction_of_a_table_is_in_the_workspace(travel, covered):
+    """The whole travel, and of more than a turn one turn."""
+    axes = {a: Axis(range=(-600.0, 600.0)) for a in "XYZ"}
+    axes["C"] = Axis(range=tuple(np.radians(travel)))
+    chain = make_chain("table", "[w C' f X Y Z t]", axes, (0.0, 0.0, -500.0))
+    found = dict(workspace(chain, 320.0, 220.0, 160.0, (0.0, 0.0, 0.0)))
+    assert found["C"] == covered
+
+
+def test_a_machine_without_z_is_named_with_what_a_design_needs(tmp_path, capsys):
+    text = template("machine", "three-axis").replace("Z", "W")
+    machine = tmp_path / "w.toml"
+    machine.write_text(text, encoding="utf-8")
+    read_machine(machine)
+    assert main(["new", "project", "--machine", str(machine)]) == 2
+    said = capsys.readouterr().err
+    assert f"{machine}: chain: found linear axes" in said
+    assert "expected X, Y and Z" in said
+
+
+@pytest.mark.parametrize(
     ("table", "base", "share"),
     [
         ((1000.0, 500.0), 200.0, 0.08),

@@ -152,7 +152,11 @@ def test_a_face_that_is_no_table_is_said() -> None:
     said = {}
     for name in ("horizontal", "upright", "trunnion", "vertical"):
         project = read_project(MACHINES / f"{name}.toml")
-        said[name] = standing_remarks(project.chain, project.setup.T_table_artefact)
+        place = project.setup.T_table_artefact
+        said[name] = standing_remarks(project.chain, place, project.down)
+        if name == "upright":  # its table lies level under a level spindle: weight along -Y
+            (remark,) = standing_remarks(project.chain, place, "-Z")
+            assert 'Where it lies level, standard.down = "-Y"' in remark
     assert "looks along +Z of the table frame" in said.pop("horizontal")[0]
     assert set(said.values()) == {()}
 

@@ -134,9 +134,9 @@ def test_a_place_outside_the_spread_is_not_found(log, small, chain, golden):
 
 def test_a_probe_that_is_too_short_and_a_spread_out_of_travel_are_refused(small, chain, golden):
     stub = Probe(stack=((4.0, 1.5), (160.0, 31.0)))
-    with pytest.raises(NotReachable, match=r"a stylus of 4 mm .* state a smaller spread"):
+    with pytest.raises(NotReachable, match=r"a stylus of 4 mm .*: a longer stylus"):
         plan_search(small, chain, stub, golden.setup(), Spread())
-    with pytest.raises(NotReachable, match="smaller spread"):
+    with pytest.raises(NotReachable, match="within 90 mm and 1 degrees: a longer stylus"):
         plan_search(small, chain, Probe(), golden.setup(), Spread(90.0, 1.0 * DEG))
 
 

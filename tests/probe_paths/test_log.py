@@ -187,7 +187,7 @@ def test_touches_that_cannot_be_evaluated_are_named(parts, small, golden, chain)
     swapped = np.where(parts[0].feature == 3, 4, 3)
     with pytest.raises(DesignError, match=r"touch 1 with .* between ball"):
         evaluate([replace(parts[0], feature=swapped)], small, chain, U)
-    other_probe = replace(parts[1], radius=2.0)
+    other_probe = replace(parts[1], radius=parts[1].radius + 0.1)
     with pytest.raises(BadFile, match="one calibration a probe"):
         evaluate([parts[0], other_probe], small, chain, U)
     elsewhere = replace(

@@ -328,10 +328,28 @@ def test_a_ball_far_off_the_spindle_axis_is_said(lines, small, chain):
 def test_two_tools_for_one_probe_are_refused_whatever_probe_came_first(lines, chain):
     (first,) = read_log("L", chain.rotary_axes, "\n".join(lines) + "\n")
     heading = replace(first.heading, probe=Probe(2.0, 260.0))
-    long = replace(first, heading=heading, tool=31.0, path=Path("M"))
-    check_numbers([first, long])
+    long = replace(first, heading=heading, radius=2.0, tool_length=262.0, tool=31.0, path=Path("M"))
+    check_numbers([first, long], chain)
     with pytest.raises(BadFile, match=r"TOOL: found 32, where M has 31, expected one tool"):
-        check_numbers([first, long, replace(long, tool=32.0)])
+        check_numbers([first, long, replace(long, tool=32.0)], chain)
+
+
+@pytest.mark.parametrize(
+    ("key", "limit", "found"),
+    [
+        ("radius", 0.2, r"3\.21 mm as radius of the ball"),
+        ("tool_length", 1.0, "length of the tool"),
+    ],
+)
+def test_a_calibration_at_which_the_program_stops_is_refused(
+    key, limit, found, lines, small, chain
+):
+    (part,) = read_log("L", chain.rotary_axes, "\n".join(lines) + "\n")
+    for off in (limit, -limit):  # a calibrated ball differs a little from the planned one
+        check_numbers([replace(part, **{key: getattr(part, key) + off})], chain)
+    other = replace(part, **{key: getattr(part, key) + limit + 0.01})
+    with pytest.raises(BadFile, match=rf"{found}, expected .* within {limit:g} mm, the probe of"):
+        evaluate([other], small, chain, U)
 
 
 def test_the_log_of_a_machine_with_its_axes_in_another_order_is_refused(lines, small, golden):

@@ -86,7 +86,12 @@ def test_linuxcnc_has_a_sheet_with_its_own_alarms(golden, tmp_path):
     others = companions(plan, dialect, Feeds(), 80.0, False)
     programs = golden.programs("linuxcnc")
     page = write_setup_page(tmp_path, [Station(plan, dialect, programs)], 0, others)
-    (table,) = [t for t in shown_tables(page.read_text(encoding="utf-8")) if t.section == "Alarms"]
+    text = page.read_text(encoding="utf-8")
+    for word in ("masks", "Q1640", "ROT ", "preset's row", "row 1", "FN 14", "the label"):
+        assert word not in page_text(text), word
+    for word in ("#1640", "G54: table centre", "motion.probe-input", "INI_VARS", "G10 L2 R"):
+        assert word in text, word
+    (table,) = [t for t in shown_tables(text) if t.section == "Alarms"]
     stated = [row[0] for row in table.rows[table.headings :]]
     alarms = re.findall(r"O(\d+) SUB \((?:ALARM|NOTRIGGER)", programs.programs[0].text)
     assert sorted(stated) == sorted(alarms)
@@ -165,7 +170,7 @@ def test_the_directions_of_a_face_that_looks_elsewhere(golden, angle, axes, pres
     assert top.get_xlabel() == f"{axes[0]} of the table in mm"
     assert top.get_ylabel() == f"{axes[1]} of the table in mm"
     assert top.get_title(loc="left").startswith(axes[2])
-    of_presets = setup_page._of_presets(plan)
+    of_presets = setup_page._of_presets(plan, Dialect())
     for letter, expected in zip("XYZ", presets, strict=True):
         words = of_presets[Label[f"PRESET_{letter}"]]
         assert words == f"{letter} of the preset's row: the {expected} of the table"

@@ -45,6 +45,7 @@ PIVOT = "[0.0, 0.0, -420.0]"
         # -110 and 35 degrees
         (B, "[-1.92, 0.61]", r"axis\.B\.range: .*travel of 2\.53 degrees.*radians, \[-110, 35\]\?"),
         (B, "[-1.5708, 1.5708]", r"is it in radians, \[-90, 90\]\?"),
+        (B, "[-1.658, 0.26]", r"is it in radians, \[-95, 15\]\?"),  # two decimals beside three
         (B, "[-6.28, 6.28]", r"is it in radians, \[-360, 360\]\?"),
         ("[-400.0, 400.0]", "[-0.4, 0.4]", r"X\.range: .*0\.8 mm.*metres, \[-400, 400\]\?"),
         (PIVOT, "[0.0, 0.0, -0.42]", r"B\.point: .*is it in metres, \[0, 0, -420\]\?"),
@@ -93,6 +94,8 @@ def test_a_travel_in_centimetres_is_asked_about_at_its_axis(tmp_path, old, new, 
     (key,) = re.findall(r"axis\.([XYZ])\.range: found", said)
     proposed = literal_eval(re.findall(r"in cm, (\[.*?\])\?", said)[0])
     assert proposed == literal_eval(old)
+    inches = literal_eval(re.findall(r"in inches, (\[.*?\])", said)[0])
+    assert inches == pytest.approx([2.54 * end for end in proposed])
     confirmed = changed(tmp_path, (old, new), ("[axis.X]", f"{stated(said)}\n\n[axis.X]"))
     assert read_machine(confirmed).link(key).range == tuple(literal_eval(new))
 
@@ -200,3 +203,38 @@ def test_linear_axes_within_a_degree_of_one_another_span_nothing(tmp_path, angle
     direction = f"[axis.Z]\ndirection = [{math.cos(angle):.12f}, 0.0, {math.sin(angle):.12f}]"
     with pytest.raises(BadFile, match="beyond the travel along Z" if spans else "in one plane"):
         read_machine(changed(tmp_path, ("[axis.Z]", direction)))
+
+
+@pytest.mark.parametrize(
+    ("stated", "meant"),
+    [
+        ("[-1.6406, 0.2793]", "[-94, 16]"),
+        ("[-2.0769, 2.0769]", "[-119, 119]"),
+        ("[-1.75, 2.25]", None),  # quarters of a degree; 2.25 rad are 129 degrees
+        ("[-3.0, 4.5]", None),
+        ("[-2.8648, 2.8648]", None),  # 0.05 rad in degrees, a joint of a robot
+        ("[-1.63, 0.31]", None),  # -93.4 and 17.8 degrees
+    ],
+)
+def test_whole_degrees_in_radians_are_asked_about(tmp_path, stated, meant):
+    path = changed(tmp_path, (B, stated))
+    if meant is None:
+        read_machine(path)
+        return
+    words = rf"B\.range: .*is it in radians, {re.escape(meant)}\? .*confirmed = \[\"axis\.B\.range"
+    with pytest.raises(BadFile, match=words):
+        read_machine(path)
+    text = path.read_text(encoding="utf-8")
+    path.write_text(f'confirmed = ["axis.B.range"]\n{text}', encoding="utf-8")
+    assert read_machine(path).link("B").range[1] == pytest.approx(
+        math.radians(literal_eval(stated)[1])
+    )
+
+
+def test_a_missing_point_is_named_before_the_place_of_the_table(tmp_path):
+    """The table stands 25 mm beside the line through the machine's origin that is assumed."""
+    text = MACHINE.replace(f"point = {PIVOT}", "").replace(ORIGIN, "origin = [25.0, 0.0, -500.0]")
+    path = tmp_path / "machine.toml"
+    path.write_text(re.sub(r"(?m)^point = .*$", "", text), encoding="utf-8")
+    with pytest.raises(BadFile, match=r"axis\.C\.point: found none, .* 25 mm off the table"):
+        read_machine(path)

@@ -175,6 +175,16 @@ def test_sides_that_all_stand_off_alike(
         read_run(write(tmp_path, table, radius=radius))
 
 
+@pytest.mark.parametrize("radius", [2.0, 2.4, 4.0])
+def test_a_radius_that_stated_deviations_contradict_is_named(tmp_path: Path, radius: float) -> None:
+    """The deviations are those of 3 mm: the readings say more or less by the radius everywhere."""
+    with pytest.raises(BadFile, match=rf"probe\.radius_mm: found {radius:g}, expected 3\.00, with"):
+        read_run(write(tmp_path, rows(), stated(), radius=radius))
+    table = rows()
+    table[:, 1] += 0.9  # a set-up elsewhere shows on two sides with opposite signs
+    assert len(read_run(write(tmp_path, table, stated()))) == COUNT
+
+
 def test_a_standard_somewhere_else_is_no_wrong_radius(tmp_path: Path) -> None:
     """The set-up is fitted later: a millimetre of it is no reason to refuse."""
     table = rows()
@@ -219,6 +229,45 @@ def test_a_touch_at_the_limit_is_used(tmp_path: Path) -> None:
     run = read_run(path)
     assert len(run) == COUNT
     assert any("column X_mm" in remark and remark.endswith("used so") for remark in run.remarks)
+
+
+@pytest.mark.parametrize(
+    ("gaps", "is_asked"),
+    [
+        (np.random.default_rng(1).uniform(20e3, 80e3, COUNT), True),  # 20 to 80 s a touch, in ms
+        (np.random.default_rng(1).uniform(20.0, 80.0, COUNT), False),
+        (np.full(COUNT, 7.2e4), False),  # an indicator is read every twenty hours for 50 days
+    ],
+)
+def test_a_clock_in_milliseconds_is_asked_about(tmp_path: Path, gaps, is_asked: bool) -> None:
+    table = rows()
+    table[:, 0] = np.cumsum(gaps)
+    remarks = read_run(write(tmp_path, table)).remarks
+    assert [r for r in remarks if "looks like milliseconds; nothing was changed" in r] == list(
+        remarks
+    )
+    assert bool(remarks) == is_asked
+
+
+@pytest.mark.parametrize(
+    ("spindle", "ambient", "is_asked"),
+    [
+        ((68.0, 78.0), (20.0, 20.5), True),  # 20 to 25.6 °C
+        ((68.0, 52.0), (20.0, 20.5), True),
+        ((55.0, 45.0), (20.0, 20.5), False),  # a spindle that has run: 12.8 °C beside 20
+        ((20.0, 38.0), (20.0, 20.5), False),
+        ((68.0, 39.0), (20.0, 20.5), False),  # a hot one that cools: 3.9 °C in the end
+    ],
+)
+def test_a_sensor_in_fahrenheit_is_asked_about(
+    tmp_path: Path, spindle, ambient, is_asked: bool
+) -> None:
+    ends = {"T_spindle_degC": spindle, "T_ambient_degC": ambient}
+    more = {name: np.linspace(*two, COUNT).tolist() for name, two in ends.items()}
+    remarks = read_run(write(tmp_path, rows(), more)).remarks
+    asked = [r for r in remarks if "T_spindle_degC begins with 68, which are 20 °C" in r]
+    assert bool(asked) == is_asked
+    assert not [r for r in remarks if "ambient" in r]
 
 
 def test_a_clock_that_stands_still_is_reported(tmp_path: Path) -> None:

@@ -76,9 +76,7 @@ def sensor_record(touches: Touches, sensor: str) -> Array:
     if sensor not in touches.temperature:
         known = ", ".join(touches.temperature) or "none"
         meant = did_you_mean(sensor, touches.temperature)
-        raise UnknownEffect(
-            f"no temperature sensor '{sensor}' in these touches{meant}; there is {known}"
-        )
+        raise UnknownEffect(f"no temperature sensor '{sensor}'{meant}; there is {known}")
     return touches.temperature[sensor]
 
 

@@ -10,7 +10,7 @@ from matstd.twin.files.table import CsvTable
 from matstd.twin.frames import Array, IntArray, Mask
 from matstd.twin.numbers import rms
 from matstd.twin.record import Instrument, Run, computed_deviation, without_copies
-from matstd.twin.units import UM
+from matstd.twin.units import DAY, UM
 
 LARGEST_DEVIATION = 10.0
 """Deviations beyond this (mm) are refused: units are mixed up, or set-up or probe are wrong."""
@@ -43,7 +43,12 @@ fault."""
 LARGEST_ARM = 5.0
 """Distance (mm) of points from the tool, across the measured direction, that is reported: 50 µrad
 on that arm are 0.25 µm."""
-LONGEST_PAUSE = 86400.0  # a pause (s) shorter than a day is not reported
+LONGEST_PAUSE = DAY  # a shorter pause is not reported, s
+MIN_GAPS, LONGEST_RUN, SLOWEST_TOUCH = 30, 30.0, 1000.0
+"""Times are asked about from so many gaps on, in runs of more days, with more seconds a touch. A
+touch takes seconds; a standard stays clamped for days."""
+SAME_ROOM, ROOMS = 1.0, (5.0, 45.0)
+"""Temperatures (K) in one room when a run begins, and those (degC) of a machine in °F."""
 
 _OTHER_UNITS = {
     1e-3: "mm in a column of µm",
@@ -58,6 +63,7 @@ def checked_run(run: Run, table: CsvTable, remarks: list[str]) -> Run:
     remarks[:] = run.remarks
     run = _without_slips(run, table, remarks)
     run = _with_clock(run, table, remarks)
+    _ask_units(run, remarks)
     _check_units(run, table)
     _check_offset(run, table)
     _compare_with_readings(run, table, remarks)
@@ -94,6 +100,7 @@ def _without_slips(run: Run, table: CsvTable, remarks: list[str]) -> Run:
         astray[far] = True
     if "dev_um" in table and states_readings(run):
         computed = computed_deviation(run.touches)
+        _check_radius(run[~astray], computed[~astray], table)
         apart = np.flatnonzero((_gap(run, computed) > LARGEST_GAP) & ~astray)
         if len(apart):
             row = apart[0]
@@ -134,6 +141,15 @@ def states_readings(run: Run) -> bool:
     """
     touches = run.touches
     return touches.instrument.is_ball_on_standard and bool(np.all(touches.radius > 0.0))
+
+
+def _check_radius(run: Run, computed: Array, table: CsvTable) -> None:
+    """Refuse a radius of the ball with which readings and stated deviations contradict."""
+    offset = _offset_on_all_sides(run, computed - run.deviation)
+    if abs(offset) >= LARGEST_OFFSET:
+        radius = float(np.median(run.touches.radius))
+        expected = f"{radius + offset:.2f}, with which the readings give dev_um"
+        raise BadFile(table.path, "probe.radius_mm", f"{radius:g}", expected)
 
 
 def _gap(run: Run, computed: Array) -> Array:
@@ -221,6 +237,35 @@ def _with_clock(run: Run, table: CsvTable, remarks: list[str]) -> Run:
     return replace(run, touches=replace(run.touches, time=np.zeros(len(run))))
 
 
+def _ask_units(run: Run, remarks: list[str]) -> None:
+    """Report times that look like milliseconds, and temperatures that look like degrees Fahrenheit.
+
+    Probing a standard takes seconds a touch, by paths of different length; who reads an instrument
+    every hour for weeks does so at even intervals.
+    """
+    time, known = run.touches.time, run.touches.temperature
+    gaps = np.diff(time)
+    if len(gaps) >= MIN_GAPS:
+        usual, days = float(np.median(gaps)), float(np.ptp(time)) / DAY
+        is_even = float(np.std(gaps)) < 0.1 * usual
+        if days > LONGEST_RUN and usual > SLOWEST_TOUCH and not is_even:
+            remarks.append(
+                f"touches are {usual:.0f} s apart for {days:.0f} days: time_s looks like "
+                "milliseconds; nothing was changed"
+            )
+    for name, values in known.items():
+        others = [float(v[0]) for other, v in known.items() if other != name]
+        others.append(float(run.touches.body_temperature[0]))
+        celsius = (values - 32.0) / 1.8
+        meant = float(celsius[0])
+        is_alike = any(abs(meant - v) < SAME_ROOM < values[0] - v for v in others)
+        if is_alike and ROOMS[0] < celsius.min() and celsius.max() < ROOMS[1]:
+            remarks.append(
+                f"T_{name}_degC begins with {values[0]:.4g}, which are {meant:.3g} °C if it is in "
+                "°F, as the others begin with; nothing was changed"
+            )
+
+
 def _check_units(run: Run, table: CsvTable) -> None:
     """Refuse stated deviations that are those of the readings, but in another unit or sign.
 
@@ -243,10 +288,10 @@ def _check_units(run: Run, table: CsvTable) -> None:
             raise BadFile(table.path, "column dev_um", found, f"{expected} {words}?")
 
 
-def _check_offset(run: Run, table: CsvTable) -> None:
-    """Refuse deviations that are large and equal on every side of the standard.
+def _offset_on_all_sides(run: Run, values: Array) -> float:
+    """What values along the normals have in common on every side of the standard, mm; 0 for none.
 
-    ``dev = offset + n . shift`` with a shift of each set-up: wrong radii of the ball make the
+    ``value = offset + n . shift`` with a shift of each set-up: wrong radii of the ball make the
     offset, wrong places of the standard the shifts.
     """
     touches = run.touches
@@ -254,17 +299,23 @@ def _check_offset(run: Run, table: CsvTable) -> None:
     shifts, one = np.column_stack(sides), np.ones(len(run))
 
     def beside_shifts(values: Array) -> Array:
-        """What shifts of the set-ups leave of some deviations."""
+        """What shifts of the set-ups leave of some values."""
         return np.asarray(values - shifts @ np.linalg.lstsq(shifts, values, rcond=None)[0])
 
     A = np.column_stack([one, shifts])
-    offset = float(np.linalg.lstsq(A, run.deviation, rcond=None)[0][0])
+    offset = float(np.linalg.lstsq(A, values, rcond=None)[0][0])
     # an offset differs from shifts of the set-ups only where normals point to several sides
-    if abs(offset) < LARGEST_OFFSET or rms(beside_shifts(one)) <= 0.1:
+    if rms(beside_shifts(one)) <= 0.1 or rms(beside_shifts(values - offset)) > 0.2 * abs(offset):
+        return 0.0
+    return offset
+
+
+def _check_offset(run: Run, table: CsvTable) -> None:
+    """Refuse deviations that are large and equal on every side of the standard."""
+    offset = _offset_on_all_sides(run, run.deviation)
+    if abs(offset) < LARGEST_OFFSET:
         return
-    if rms(beside_shifts(run.deviation - offset)) > 0.2 * abs(offset):
-        return
-    radius = float(np.median(touches.radius))
+    radius = float(np.median(run.touches.radius))
     inwards = abs(offset / (2.0 * radius) + 1.0) < 0.1 if radius else False
     raise BadFile(
         table.path,

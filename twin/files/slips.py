@@ -18,7 +18,7 @@ from matstd.twin.files.keys import unit_of
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain, Link
 from matstd.twin.text import toml_value
-from matstd.twin.units import DEG, TOOL_LENGTHS, in_another_unit, meant_in_radians
+from matstd.twin.units import DEG, LENGTHS, TOOL_LENGTHS, in_another_unit, meant_in_radians
 
 SHORTEST_TRAVEL = 5.0
 """A linear axis travels farther, mm; the smallest machining centres travel 20 mm. A travel in
@@ -44,6 +44,7 @@ it; and in travels, from which on these are in centimetres."""
 OFF_CENTRE = 5.0
 """Distance of the centre of a table from the line about which it turns, mm; centres are known to
 tenths."""
+NEARLY_QUARTER = 1e-6  # of quarters of a degree
 NEARER = 4.0
 """Times that a pivot in metres is nearer to the table, or farther from the spindle, once read so;
 only then is it one."""
@@ -160,6 +161,7 @@ def machine_questions(chain: Chain, is_placed: bool = True) -> Iterator[BadValue
     """
     if len(chain.linear_axes) == 3:
         rules = (
+            _small_turn,
             _small_travel,
             *((_far_table, _mirrored_pivot, _table_off_centre) if is_placed else ()),
         )
@@ -238,6 +240,17 @@ def _table(chain: Chain) -> Iterator[BadValue]:
         yield BadValue("workpiece.origin", _list(origin), expected)
 
 
+def _small_turn(chain: Chain) -> Iterator[BadValue]:
+    """A travel of whole degrees if read as radians; small ones that are meant end in quarters."""
+    for link in (k for k in chain.links if k.kind == "rotary" and k.programmed):
+        ends = np.array(link.range) / DEG
+        low, high = ends.tolist()
+        meant = meant_in_radians(low, high, whole=1.0)
+        if meant is not None and np.abs(4.0 * ends - np.round(4.0 * ends)).max() > NEARLY_QUARTER:
+            expected = f"degrees; is it in radians, {_pair(*meant)}?"
+            yield BadValue(f"axis.{link.name}.range", _pair(*ends), expected)
+
+
 def _small_travel(chain: Chain) -> Iterator[BadValue]:
     """A travel in centimetres beside others in mm."""
     travels = {name: float(np.ptp(chain.link(name).range)) for name in chain.linear_axes}
@@ -248,10 +261,12 @@ def _small_travel(chain: Chain) -> Iterator[BadValue]:
 
 
 def _in_centimetres(chain: Chain, name: str, beside: str) -> BadValue:
-    """The question whether a travel is in centimetres."""
+    """The question whether a travel is in centimetres, or in inches."""
     low, high = chain.link(name).range
     found = f"{_pair(low, high)}, a travel of {high - low:.4g} mm {beside}"
-    expected = f"mm; is it in cm, {_pair(10.0 * low, 10.0 * high)}?"
+    mm = dict(LENGTHS)
+    cm, inches = (_pair(mm[unit] * low, mm[unit] * high) for unit in ("cm", "inches"))
+    expected = f"mm; is it in inches, {inches}, or in cm, {cm}?"
     return BadValue(f"axis.{name}.range", found, expected)
 
 
@@ -305,7 +320,11 @@ def _table_off_centre(chain: Chain) -> Iterator[BadValue]:
     across = np.cross(link.direction, [0.0, 0.0, 1.0])
     square = float(np.linalg.norm(across))  # sine of the angle between line and tool
     off = abs(away @ across) / square if square > 0.1 else np.linalg.norm(_across(away, link))
-    if off > OFF_CENTRE:
+    if off > OFF_CENTRE and link.name in chain.assumed_points:
+        found = f"none, which puts the line of {link.name} {off:.4g} mm off the table's centre"
+        expected = "a point on its line, mm, machine frame, every axis at zero"
+        yield BadValue(f"axis.{link.name}.point", found, expected)
+    elif off > OFF_CENTRE:
         found = f"{_list(chain.table_origin)}, {off:.4g} mm off the line of {link.name}"
         expected = f"the centre of the table's face, on that line, through {_list(link.point)}"
         yield BadValue("workpiece.origin", found, expected)

@@ -129,7 +129,7 @@ def own_column(touches: Touches, name: str) -> Array:
     if name not in touches.value:
         known = ", ".join(touches.value) or "none"
         meant = did_you_mean(name, touches.value)
-        raise UnknownEffect(f"no column 'V_{name}' in these touches{meant}; there is {known}")
+        raise UnknownEffect(f"no column 'V_{name}'{meant}; there is {known}")
     return touches.value[name]
 
 

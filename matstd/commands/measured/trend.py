@@ -15,8 +15,8 @@ if TYPE_CHECKING:
 
 
 OPTIONS: Options = {
-    "runs FOLDER ...": "folder with at least three runs of one machine on one standard, or with "
-    "their diagnoses or model files; or the files themselves",
+    "runs RUNS ...": "folders or files of at least three runs of one machine on one standard, or "
+    "of their diagnoses or model files",
     "--add EFFECT ...": "effects that are fitted to every run beside the geometry, and charted",
     **RESULTS,
 }
@@ -26,8 +26,8 @@ def run(args: argparse.Namespace) -> int:
     """Chart; the folder appears whole or not at all."""
     from matstd.api.trending import Trend, trend
 
-    given = args.runs[0] if len(args.runs) == 1 else args.runs
-    found, _ = made_in_folder(args, Trend, lambda show: trend(given, add=args.add, progress=show))
+    runs = args.runs
+    found, _ = made_in_folder(args, Trend, lambda show: trend(runs, add=args.add, progress=show))
     _report(args, found)
     args.next = _next(args, found)
     return 0

@@ -51,7 +51,7 @@ def run(args: argparse.Namespace) -> int:
     brief = project.brief
     say_each(brief.chain.remarks)
     say_each(brief.remarks)
-    say_each(standing_remarks(brief.chain, brief.setup.T_table_artefact))
+    say_each(standing_remarks(brief.chain, brief.setup.T_table_artefact, brief.down))
     with stages(PLAN if brief.chain.rotary_axes else LINEAR_PLAN) as progress:
         made = project.design(
             args.output, force=args.force, progress=progress, scheduler=args.scheduler, pdf=args.pdf
