@@ -48,31 +48,31 @@ def hangs(chain: Chain, T_table_artefact: Array) -> bool:
     )
 
 
-def standing_remarks(chain: Chain, T_table_artefact: Array, down: str) -> tuple[str, ...]:
+def standing_remarks(chain: Chain, T_table_artefact: Array, down: str = "") -> tuple[str, ...]:
     """What is taken for granted of the face that carries the standard.
 
     Args:
-        down: Direction of weight in machine coordinates, such as `-Z`.
+        down: Direction of weight in machine coordinates, such as `-Z`; empty leaves it aside.
     """
     axis, face = _turns_about(chain), table_face(T_table_artefact)[:3, 2]
     if axis is None:
         return ()
-    is_upwards, letter = face.min() > -0.5, "XYZ"[int(np.argmax(np.abs(face)))]
-    way = f"{'+' if is_upwards else '-'}{letter}"
-    if abs(float(axis @ face)) > _SAME_AXIS_COSINE:
-        if letter in down:
-            return ()
+    sign, letter = "-" if face.min() < -0.5 else "+", "XYZ"[int(np.argmax(np.abs(face)))]
+    table = _innermost(chain)
+    if abs(float(axis @ face)) <= _SAME_AXIS_COSINE:
+        upright = _UPRIGHT[int(np.argmax(np.abs(axis)))]
         return (
-            f"Weight pulls along {down}, and the face of {_innermost(chain)} on which the standard "
-            f"stands looks along {way}: that table is upright. Where it lies level, "
-            f'standard.down = "{"-" if is_upwards else "+"}{letter}"; the sag depends on it.',
+            f"The standard stands on a face that looks along {sign}{letter} of the table frame, as "
+            f"on an angle plate, and {table} turns about another direction. The table of {table} "
+            f"itself is kept clear only where it stands under [[workshop.bodies]]; rotation_deg = "
+            f"{upright} of the set-up stands the standard on it.",
         )
-    upright = _UPRIGHT[int(np.argmax(np.abs(axis)))]
+    if not down or letter in down:
+        return ()
     return (
-        f"The standard stands on a face that looks along {way} of the table frame, as on an angle "
-        f"plate, and {_innermost(chain)} turns about another direction. The table of "
-        f"{_innermost(chain)} itself is kept clear only where it stands under [[workshop.bodies]]; "
-        f"rotation_deg = {upright} of the set-up stands the standard on it.",
+        f"Weight pulls along {down}, and the face of {table} on which the standard stands looks "
+        f"along {sign}{letter}: that table is upright. Where it lies level, "
+        f'standard.down = "{"-" if sign == "+" else "+"}{letter}"; the sag depends on it.',
     )
 
 
