@@ -29,7 +29,7 @@ from matstd.twin.model import Model, columns
 from matstd.twin.record import without_copies
 from matstd.twin.units import UM
 
-LAG = (5, "hsm600u", ("thermal-lag(EXC)",))
+LAG = (5, "hsm600u", ("thermal-lag(EXC)",), False, (12.0, 40.0), 5)
 COLLINEAR = ("thermal-static(EXX,ambient)", "thermal-static(EXB,ambient)")
 TWO = (12, "hmc1995", ("backlash(Y)", "stylus-bending"))
 
@@ -165,7 +165,7 @@ def flat(text):
 def folder(tmp_path_factory):
     """A run with a hidden warming of the column, and its machine."""
     place = tmp_path_factory.mktemp("run")
-    run, machine, _ = simulate_case(np.random.default_rng(5), LAG[1], LAG[2], with_alike=False)
+    run, machine, _ = simulate_case(np.random.default_rng(5), *LAG[1:5], with_alike=False, poses=6)
     (place / "run.csv").write_text(every(2, run), encoding="utf-8")
     (place / "machine.toml").write_text(machine, encoding="utf-8")
     return place
