@@ -61,7 +61,8 @@ def test_a_probe_too_long_is_reported_beside_the_pivot(tmp_path, capsys, machine
 
 def test_a_pivot_that_the_run_knows_by_itself_is_one_to_copy(tmp_path, capsys):
     """The line of C in X turns with B, which nothing else of the description does."""
-    run, text, _ = simulate_case(np.random.default_rng([5, 0]), "hsm600u", with_alike=False, poses=5)
+    rng = np.random.default_rng([5, 0])
+    run, text, _ = simulate_case(rng, "hsm600u", with_alike=False, poses=5)
     wrong = re.sub(r"(\[axis\.C\]\nrange = [^\n]*\npoint = )\[[^\]]*\]", r"\1[2.0, 0.0, 0.0]", text)
     assert wrong != text
     lines, _ = compared(tmp_path, capsys, run, wrong)
