@@ -15,7 +15,6 @@ from matstd.diagnosis.files import model_text, read_model
 from matstd.diagnosis.fit import fit_run, unit_mistake
 from matstd.diagnosis.remarks import remarks
 from matstd.report.words import remark_sentence
-from matstd.twin.files import read_run
 from matstd.twin.library import ordinary_model
 from matstd.twin.record import without_copies
 from matstd.twin.units import NM
@@ -92,7 +91,7 @@ def warmed(tmp_path_factory):
     """What the command writes of a run with a lag, which has rivals and thus a next measurement."""
     place = tmp_path_factory.mktemp("warmed")
     run, machine, _ = simulate_case(
-        np.random.default_rng(5), "hsm600u", ("thermal-lag(EXC)",), with_alike=False, poses=5
+        np.random.default_rng(5), "hsm600u", ("thermal-lag(EXC)",), with_alike=False
     )
     (place / "run.csv").write_text(run, encoding="utf-8")
     (place / "machine.toml").write_text(machine, encoding="utf-8")
@@ -132,7 +131,7 @@ def test_keys_and_types_are_those_of_the_contract(table) -> None:
         "remarks",
     ]
     assert table["format"] == "diagnosis/1"
-    assert table["touches"] == 390
+    assert table["touches"] == 780
     assert table["u_um"] == pytest.approx(0.6, rel=DIGITS)
     assert table["verdict"] == "missing effect"
     for name, keys in KEYS.items():
@@ -157,7 +156,7 @@ def test_steps_of_the_contract(table) -> None:
     assert step["rms_um"] < first["rms_um"]
 
 
-def test_limits_and_regions_of_the_contract(table, warmed) -> None:
+def test_limits_and_regions_of_the_contract(table) -> None:
     """A length has its size in smallest_um alone; anything else beside it in its own unit."""
     for entry in table["detectable"]:
         assert {"effect", "smallest_um"} <= set(entry)
@@ -167,12 +166,11 @@ def test_limits_and_regions_of_the_contract(table, warmed) -> None:
     by_name = {e["effect"]: set(e) for e in table["detectable"]}
     scanned = {e["effect"]: e.get("scanned") for e in table["detectable"]}
     (scan,) = scanned["periodic(EXX)"].values()  # up to a sixth of the travel that was probed
-    probed = np.ptp(read_run(warmed / "run.csv").touches.reading("X"))
-    assert scan == pytest.approx([1.0, probed / 6.0], rel=1e-3)
+    assert scan == pytest.approx([1.0, 65.0], rel=1e-3)
     assert scanned["backlash(X)"] is None
     assert by_name["backlash(X)"] == {"effect", "smallest_um"}
     assert by_name["backlash(B)"] == {"effect", "smallest_um", "smallest_urad"}
-    assert all(0 < w["touches"] <= 390 and w["region"] for w in table["where"])
+    assert all(0 < w["touches"] <= 780 and w["region"] for w in table["where"])
     assert "time_s" in [d["variable"] for d in table["depends_on"] if d["p_value"] < 1e-20]
     for region in table["where"]:
         keys = {k.removesuffix("_um").removesuffix("_urad"): v for k, v in region["error"].items()}
@@ -181,9 +179,9 @@ def test_limits_and_regions_of_the_contract(table, warmed) -> None:
     assert max(w["rms_um"] for w in table["where"]) > table["u_um"]
 
 
-def test_next_measurement_is_a_run_plan(table, warmed) -> None:
+def test_next_measurement_is_a_run_plan(table, case) -> None:
     """Touches with the columns of a run file, within the travels, on points that are known."""
-    run = read_run(warmed / "run.csv")
+    run = case(5, "hsm600u", ("thermal-lag(EXC)",)).run
     (plan,) = table["next_measurement"]
     assert len(plan["tells_apart"]) == 2
     assert plan["touches"]
