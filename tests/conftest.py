@@ -107,6 +107,11 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     items.sort(key=lambda item: rank.get(item.path, len(rank)))
 
 
+def pytest_collection_finish() -> None:
+    """What is there now stays: garbage is looked for among what comes, at the end five times."""
+    gc.freeze()
+
+
 @pytest.fixture(scope="session", autouse=True)
 def _as_in_a_test():
     """What the commands do otherwise, in a test.
