@@ -62,7 +62,8 @@ to itself, xdist begins with the files of most tests."""
 
 
 TOGETHER = (
-    ("tests/cad_out/",),  # the kernel takes two seconds to load, `built` eight to build
+    # the kernel takes two seconds to load, `built` eight to build
+    ("tests/cad_out/", "tests/matstd/test_design.py"),
     (  # `warm`
         "tests/report/test_live_page.py",
         "tests/report/test_diagnosis_pictures.py",

@@ -14,6 +14,7 @@ import rs274
 from browser import faults, opened, requests
 from commands import steps_of_work
 from figures import render_alone
+from standards import kernel_here
 from unchanged import Unchanged, facts, folded, page_text
 
 from matstd.artefact.body import Limits, read_standard
@@ -90,6 +91,7 @@ def made(tmp_path_factory: pytest.TempPathFactory, figures: dict[str, str]) -> P
     folder = tmp_path_factory.mktemp("design")
     out = folder / "out"
     with pytest.MonkeyPatch.context() as patch:
+        kernel_here(patch)
         patch.setattr(project_file, "Brief", with_few_sites)
         patch.setattr(ball_choice, "_PLACES", 30)
         patch.setattr(identifying, "_MAX_REDRAWS", 1)
