@@ -62,7 +62,8 @@ to itself, xdist begins with the files of most tests."""
 
 
 TOGETHER = (
-    ("tests/cad_out/",),  # the kernel takes two seconds to load, `built` eight to build
+    # the kernel takes two seconds to load, `built` eight to build
+    ("tests/cad_out/", "tests/matstd/test_design.py"),
     (  # `warm`
         "tests/report/test_live_page.py",
         "tests/report/test_diagnosis_pictures.py",
@@ -105,6 +106,11 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     rank = {Path(__file__).parent / name: k for k, name in enumerate(LONGEST)}
     assert all(path.exists() for path in rank), "LONGEST names a file that is gone"
     items.sort(key=lambda item: rank.get(item.path, len(rank)))
+
+
+def pytest_collection_finish() -> None:
+    """What is there now stays: garbage is looked for among what comes, at the end five times."""
+    gc.freeze()
 
 
 @pytest.fixture(scope="session", autouse=True)

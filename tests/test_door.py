@@ -55,6 +55,9 @@ def test_importing_the_door_loads_nothing() -> None:
     subprocess.run([sys.executable, "-c", code], check=True)
 
 
+MADE_ONCE = ("diagnose", "compare", "learn", "replan", "trend")
+
+
 def once(function):
     """The function, which makes the result of one call once for all examples of a module."""
     made = {}
@@ -75,7 +78,7 @@ def test_examples_of_the_docstrings_run(path, there, unrendered) -> None:
     runner = doctest.DocTestRunner(optionflags=doctest.NORMALIZE_WHITESPACE)
     names = {name: getattr(matstd, name) for name in matstd.__all__} | {"np": np}
     names["diagnose"] = partial(matstd.diagnose, learn=False)
-    names |= {name: once(names[name]) for name in ("diagnose", "compare", "learn")}
+    names |= {name: once(names[name]) for name in MADE_ONCE}
     for test in found:
         test.globs |= names
         runner.run(test)

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from matstd.artefact.body.newton import ball_contact, foot_parameters, graph_normal
 from matstd.artefact.body.patch import Hit, read_only, rows, sphere_entry
-from matstd.artefact.body.spline import Jet, basis, check_knots, clamped_knots, greville
+from matstd.artefact.body.spline import Jet, check_knots, clamped_knots, greville, pieces, powers
 from matstd.twin.errors import ShapeMismatch
 from matstd.twin.frames import Array, Mask, apply, inverse, turn, unit
 from matstd.twin.sampling import grid_points
@@ -104,23 +104,35 @@ class FreeformPatch:
 
     def jet(self, uv: Array) -> Jet:
         """Height over the patch's own plane with its derivatives at uv (N, 2)."""
-        bu, bv, local = self._local(uv, orders=3)
-        along_u = bu @ local  # (N, 3, kv + 1)
+        along_v, pu = self._along_v(uv, orders=3)
         orders = ((0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2))
-        return Jet(*(np.einsum("nj,nj->n", along_u[:, a], bv[:, b]) for a, b in orders))
+        return Jet(*(np.einsum("in,in->n", pu[a], along_v[b]) for a, b in orders))
 
     def height(self, uv: Array) -> Array:
-        """Height at uv (N, 2), (N,), mm; three times as fast as `jet`."""
-        bu, bv, local = self._local(uv, orders=1)
-        return np.einsum("nj,nj->n", (bu @ local)[:, 0], bv[:, 0])
+        """Height at uv (N, 2), (N,), mm; twice as fast as `jet`."""
+        (along_v,), (pu,) = self._along_v(uv, orders=1)
+        return np.einsum("in,in->n", pu, along_v)
 
-    def _local(self, uv: Array, orders: int) -> tuple[Array, Array, Array]:
-        """B-splines in u and v at each point, and the poles they act on, (N, ku + 1, kv + 1)."""
+    def _along_v(self, uv: Array, orders: int) -> tuple[Array, Array]:
+        """Height as polynomials of u at each point, with derivatives by v, and the powers of u.
+
+        Coefficients and powers, each (orders, ku + 1, N).
+        """
         (ku, kv), (u, v) = self.degree, rows(uv).T
-        first_u, bu = basis(self.knots_u, ku, u, orders)
-        first_v, bv = basis(self.knots_v, kv, v, orders)
+        i, pu = powers(self.knots_u, ku, u, orders)
+        j, pv = powers(self.knots_v, kv, v, orders)
+        here = self._polynomials.take(i * (len(self.knots_v) - 2 * kv - 1) + j, axis=2)
+        return np.einsum("ijn,bjn->bin", here, pv), pu
+
+    @cached_property
+    def _polynomials(self) -> Array:
+        """Height as polynomials of the distances from the knots, (ku + 1, kv + 1, pieces)."""
+        ku, kv = self.degree
         windows = np.lib.stride_tricks.sliding_window_view(self.heights, (ku + 1, kv + 1))
-        return bu, bv, windows[first_u, first_v]
+        along_u, along_v = pieces(self.knots_u, ku)[:, None], pieces(self.knots_v, kv)
+        with np.errstate(invalid="ignore"):  # pieces of no length are never asked for
+            every = along_u @ windows @ along_v.swapaxes(1, 2)
+        return np.ascontiguousarray(np.moveaxis(every.reshape(-1, ku + 1, kv + 1), 0, 2))
 
     def point(self, uv: Array) -> Array:
         """Points of the surface, (N, 3), artefact frame, mm."""

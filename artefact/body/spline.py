@@ -6,7 +6,7 @@ from functools import lru_cache
 import numpy as np
 
 from matstd.twin.errors import ShapeMismatch
-from matstd.twin.frames import Array
+from matstd.twin.frames import Array, IntArray
 
 
 def clamped_knots(low: float, high: float, count: int, degree: int) -> Array:
@@ -56,19 +56,16 @@ def greville(knots: Array, degree: int) -> Array:
     return windows.mean(axis=1)
 
 
-def basis(knots: Array, degree: int, x: Array, orders: int = 3) -> tuple[np.ndarray, Array]:
-    """The degree + 1 B-splines that do not vanish at each x, with up to two derivatives.
-
-    They are polynomials between two knots; beyond the ends the outermost one is continued.
+def powers(knots: Array, degree: int, x: Array, orders: int) -> tuple[IntArray, Array]:
+    """Powers, and their derivatives, of the distance of each x from the knot below it.
 
     Args:
         knots: Clamped or not, ascending, shape (poles + degree + 1,).
-        degree: At least 2.
-        x: Shape (N,).
-        orders: 1 for the values alone, 3 for two derivatives as well.
+        x: Shape (N,); beyond the ends the outermost piece is continued.
+        orders: 1 for the powers alone, 3 for two derivatives as well.
 
     Returns:
-        Index of the first of them, shape (N,); values and derivatives, (N, orders, degree + 1).
+        Piece of the knots that each x is on, (N,); powers, (orders, degree + 1, N).
     """
     count = len(knots) - degree - 1
     span = np.clip(np.searchsorted(knots, x, side="right") - 1, degree, count - 1)
@@ -78,12 +75,10 @@ def basis(knots: Array, degree: int, x: Array, orders: int = 3) -> tuple[np.ndar
         power[0, k + 1] = power[0, k] * s
     for k in range(1, orders):
         power[k, 1:] = np.arange(1.0, degree + 1.0)[:, None] * power[k - 1, :-1]
-    rows = np.ascontiguousarray(np.moveaxis(power, 2, 0))  # for a product of small matrices
-    return span - degree, rows @ _pieces(knots.tobytes(), degree)[span - degree]
+    return span - degree, power
 
 
-@lru_cache(maxsize=64)
-def _pieces(knots: bytes, degree: int) -> Array:
+def pieces(knots: Array, degree: int) -> Array:
     """B-splines between any two knots as polynomials of the distance from the lower one.
 
     Cox-de Boor recursion on coefficients, (poles - degree, degree + 1, degree + 1): for every piece
@@ -92,6 +87,11 @@ def _pieces(knots: bytes, degree: int) -> Array:
     Reference:
         Piegl and Tiller, The NURBS Book, algorithm A2.2.
     """
+    return _pieces(knots.tobytes(), degree)
+
+
+@lru_cache(maxsize=64)
+def _pieces(knots: bytes, degree: int) -> Array:
     t = np.frombuffer(knots)
     low = np.arange(degree, len(t) - degree - 1)
     ladder = np.zeros((len(low), 1, degree + 1))

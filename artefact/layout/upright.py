@@ -24,7 +24,7 @@ from matstd.artefact.layout.blank import Blank
 from matstd.artefact.layout.post import post_foot
 from matstd.artefact.layout.shapes import smooth_heights, steepest_slope
 from matstd.twin.errors import NotBuildable
-from matstd.twin.frames import Array, Mask, pose
+from matstd.twin.frames import Array, IntArray, Mask, pose
 from matstd.twin.sampling import grid_points
 from matstd.twin.units import UM
 
@@ -61,6 +61,7 @@ _MIN_HOLE_DISTANCE = 60.0  # mm, smallest distance of two holes: closer ones let
 # a plate on three of its corners swings at 427 Hz, with a screw amid a side at 755
 _ROUND_MIDDLE = 5.0  # times the distance of the middle from a side counts as that of two holes
 _STEP = 7.0  # mm, grid of candidate holes
+_LOOKED_AT = 1000  # of the widest triples of holes, below whose best the others need no look
 _MAX_DRAWS = 50  # random draws per place
 
 
@@ -231,10 +232,16 @@ def holes_on(
             binding=["slots"] if limits.slot_pitch else [],
         )
     of_pair, of_third = np.nonzero(least >= _MIN_HOLE_DISTANCE)
-    inner = _inner(pair[of_pair], third[of_third])
-    far = least[of_pair, of_third]
-    worth = np.minimum(far, _ROUND_MIDDLE * inner) + 1e-3 * (legs[0] + legs[1])[of_pair, of_third]
-    best = int(np.argmax(worth))
+    far, long = least[of_pair, of_third], 1e-3 * (legs[0] + legs[1])[of_pair, of_third]
+
+    def worth(some: IntArray) -> Array:
+        inner = _inner(pair[of_pair[some]], third[of_third[some]])
+        return np.minimum(far[some], _ROUND_MIDDLE * inner) + long[some]
+
+    # looked at are those that may be worth more than the widest are
+    widest = np.argpartition(far, max(len(far) - _LOOKED_AT, 0))[-_LOOKED_AT:]
+    some = np.flatnonzero(far + long >= worth(widest).max())
+    best = some[np.argmax(worth(some))]
     first, last = of_pair[best], of_third[best]
     (x, y), bore = pair[first], (fit.hole_radius, fit.bore_radius, fit.bore_depth)
     return tuple(

@@ -63,11 +63,12 @@ def narrowed(prior: Prior, model: Model, X: Array, y: Array) -> Prior:
 def _errors_of(model: Model, kinds: Array) -> list[IntArray]:
     """Numbers of the parameters that one error of one axis has of a kind, for every error, (K,)."""
     of: dict[tuple[object, ...], list[int]] = {}
-    own = [e for e in model.effects for _ in e.parameters]
-    for i, (effect, kind) in enumerate(zip(own, kinds, strict=True)):
-        if kind != "stays":
+    first = 0
+    for effect in model.effects:
+        numbers = range(first, first := first + len(effect.parameters))
+        if len(numbers) and kinds[numbers[0]] != "stays":
             symbol = traits(original_of(effect)).symbol
-            of.setdefault((traits(effect).since_run, symbol, kind), []).append(i)
+            of.setdefault((traits(effect).since_run, symbol, kinds[numbers[0]]), []).extend(numbers)
     return [np.array(numbers) for numbers in of.values()]
 
 

@@ -121,7 +121,7 @@ def find_gross(
     Returns:
         The fit to the used rows, in their order, and the gross errors of all rows.
     """
-    shot = np.arange(len(y)) if shot is None else shot
+    shot = np.arange(len(y)) if shot is None else np.unique(shot, return_inverse=True)[1]
     n = int(allowed.sum())
     limit = float(-ndtri(0.5 * POLICY.false_alarm / max(n, 1)))
     used = allowed.copy()
@@ -184,13 +184,10 @@ def _are_accidents(out: Mask, allowed: Mask, score: Array, shot: IntArray) -> bo
 
 
 def _alone(far: Mask, shot: IntArray) -> Mask:
-    """Rows of those shots with a far row that are in no crowd of such; the run is in the order of
-    probing.
-    """  # noqa: D205
-    every, place = np.unique(shot, return_inverse=True)
-    is_far = np.zeros(len(every), dtype=bool)
-    is_far[place[far]] = True
+    """Rows of those shots, numbered in the order of probing, with a far row and in no crowd."""
+    is_far = np.zeros(int(shot.max()) + 1, dtype=bool)
+    is_far[shot[far]] = True
     padded = np.pad(is_far, 2).astype(int)
-    n = len(every)
+    n = len(is_far)
     crowd = padded[0:n] + padded[1 : n + 1] + padded[3 : n + 3] + padded[4 : n + 4]
-    return np.asarray((is_far & (crowd < MIN_CROWD_NEIGHBOURS))[place])
+    return np.asarray((is_far & (crowd < MIN_CROWD_NEIGHBOURS))[shot])

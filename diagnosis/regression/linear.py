@@ -85,12 +85,12 @@ def solve(X: Array, y: Array) -> Solution:
     return Solution(np.ascontiguousarray(Q), R, phi, y - X @ phi)
 
 
-def below(R: Array, X: Array) -> tuple[Array, Array, Array]:
-    """QR of rows X below an upper triangle R: its triangle, reflections and their factors.
+def below(R: Array, X: Array, is_triangle: bool = False) -> tuple[Array, Array, Array]:
+    """QR of rows X, an upper triangle or not, below an upper triangle R, whose zeros count as such.
 
-    LAPACK's `tpqrt`, which takes the zeros of R for what they are.
+    Returns its triangle, reflections and their factors, as LAPACK's `tpqrt` does.
     """
-    triangle, V, T, _ = dtpqrt(0, min(REFLECTED, len(R)), R, X)
+    triangle, V, T, _ = dtpqrt(len(X) if is_triangle else 0, min(REFLECTED, len(R)), R, X)
     return triangle, V, T
 
 

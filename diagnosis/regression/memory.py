@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.linalg import solve_banded, svd
+from scipy.linalg import solve_banded
 from scipy.optimize import minimize_scalar
 
 from matstd.diagnosis.regression.linear import below
@@ -215,17 +215,11 @@ def _marginal(X: Array, y: Array, log_det: float) -> float:
     n, s = len(y), 1.0
     # a column of a prior 1e7 times the noise leaves no digit of the others in their inner products
     whole = np.column_stack([X, y])
-    nothing = np.zeros((whole.shape[1], whole.shape[1]), order="F")
-    R = below(nothing, whole)[0]
-    try:
-        U, size, _ = svd(R[:, :-1], False, check_finite=False)
-    except np.linalg.LinAlgError:  # on a column that rounding alone left; the slower one does
-        U, size, _ = svd(R[:, :-1], False, check_finite=False, lapack_driver="gesvd")
-    along = (U.T @ R[:, -1]) ** 2
-    beside = max(float(R[:, -1] @ R[:, -1] - along.sum()), 0.0)
+    R = below(np.zeros(2 * whole.shape[1:], order="F"), whole)[0]
+    prior = np.diag([*np.ones(X.shape[1]), 0.0])
     for remaining in reversed(range(MEMORY_PASSES + 1)):
-        seen = 1.0 + (size / s) ** 2
-        objective = (beside + float((along / seen).sum())) / s**2
+        own = np.diag(below(prior, R / s, is_triangle=True)[0])
+        objective = float(own[-1] ** 2)
         if remaining:
             s *= float(np.sqrt((objective + PRIOR_DOF) / (n + PRIOR_DOF)))
-    return -n * float(np.log(s)) - 0.5 * float(np.log(seen).sum()) - 0.5 * objective + log_det
+    return -n * float(np.log(s)) - float(np.log(np.abs(own[:-1])).sum()) - 0.5 * objective + log_det

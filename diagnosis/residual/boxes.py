@@ -201,15 +201,22 @@ def rows_in(known: Sequence[Bounded], box: Box, n: int) -> Mask:
     return rows
 
 
+def _ends(parts: Array | IntArray) -> Array:
+    """Sums of parts (B, ...) of all bins before each and of all, (B + 1, ...)."""
+    ends = np.zeros((len(parts) + 1, *parts.shape[1:]))
+    parts.cumsum(axis=0, out=ends[1:])
+    return ends
+
+
 def summed(parts: Array | IntArray) -> Array:
-    """Sums over bins i to k, both included, of parts (B,), (B, B)."""
-    ends = np.concatenate([[0.0], np.cumsum(parts)])
-    return np.asarray(ends[None, 1:] - ends[:-1, None])
+    """Sums over bins i to k, both included, of parts (B,), (B, B), or of each of parts (B, K)."""
+    ends = _ends(parts).T
+    return np.asarray(ends[..., None, 1:] - ends[..., :-1, None])
 
 
-def square_sums(G: Array) -> Array:
-    """Sums of G (B, B) over rows and columns i to k, both included, (B, B)."""
-    S = np.zeros((len(G) + 1, len(G) + 1))
-    S[1:, 1:] = G.cumsum(axis=0).cumsum(axis=1)
-    ends = np.diag(S)
-    return np.asarray(ends[None, 1:] + ends[:-1, None] - S[1:, :-1].T - S[:-1, 1:])
+def squares(parts: Array) -> Array:
+    """Squares of the sums of vectors (B, K) over bins i to k, both included, (B, B)."""
+    ends = _ends(parts)
+    G = ends @ ends.T
+    own = np.diag(G)
+    return np.asarray(own[None, 1:] + own[:-1, None] - 2.0 * G[:-1, 1:])

@@ -29,7 +29,7 @@ from matstd.diagnosis.residual.boxes import (
     best_box,
     bounded,
     rows_in,
-    square_sums,
+    squares,
     summed,
 )
 from matstd.diagnosis.residual.carriers import Bearer, bearers
@@ -149,19 +149,17 @@ class _Constant:
         if space.whitener is not None:
             is_in = variable.bins[:, None] == np.arange(size)
             C = _white(space, (rows * self.column)[:, None] * is_in)
-            beside, G = C.T @ space.Q[: len(C)], C.T @ C
-            along = C.T @ self._drawn[: len(C)]
-            own, whole = square_sums(G - beside @ beside.T), square_sums(G)
-            return summed(count), own, whole, summed(along)
+            along, beside = C.T @ self._drawn[: len(C)], C.T @ space.Q[: len(C)]
+            whole = squares(C.T)
+            return summed(count), whole - squares(beside), whole, summed(along)
         sums = np.zeros((size, self._products.shape[1]))
         if len(inside):
             there = count > 0
             first = (np.cumsum(count) - count)[there]
             products = self._products.take(self._place[inside], axis=0)
             sums[there] = np.add.reduceat(products, first, axis=0)
-        whole, along, beside = sums[:, 0], sums[:, 1], sums[:, 2:]
-        own = square_sums(np.diag(whole) - beside @ beside.T)
-        return summed(count), own, summed(whole), summed(along)
+        enough, whole, along = summed(np.column_stack([count, sums[:, :2]]))
+        return enough, whole - squares(sums[:, 2:]), whole, along
 
     @cached_property
     def _place(self) -> IntArray:

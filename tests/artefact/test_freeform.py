@@ -10,7 +10,7 @@ from scipy.interpolate import BSpline, NdBSpline, make_interp_spline
 from scipy.optimize import brentq, minimize
 
 from matstd.artefact.body import OVERHANG, graph_patch
-from matstd.artefact.body.spline import basis, clamped_knots, greville
+from matstd.artefact.body.spline import clamped_knots, greville, pieces, powers
 from matstd.twin.errors import ShapeMismatch
 from matstd.twin.frames import fixed_xyz, pose
 from matstd.twin.units import NM, UM
@@ -49,14 +49,15 @@ def inside(patch, rng, count, margin=0.0):
 
 
 @pytest.mark.parametrize("degree", [3, 5])
-def test_basis_is_scipys_with_its_derivatives(degree):
+def test_pieces_are_scipys_with_its_derivatives(degree):
     rng = np.random.default_rng(degree)
     ends = np.full(degree + 1, -7.0), np.full(degree + 1, 9.0)
     knots = np.concatenate([ends[0], np.sort(rng.uniform(-6.0, 6.0, 5)), ends[1]])
     x = np.concatenate([rng.uniform(-7.0, 9.0, 200), [-7.0, 9.0], knots[degree + 1 : -degree - 1]])
     coefficients = rng.normal(size=len(knots) - degree - 1)
     spline = BSpline(knots, coefficients, degree)
-    first, values = basis(knots, degree, x)
+    first, power = powers(knots, degree, x, 3)
+    values = np.einsum("okn,nkj->noj", power, pieces(knots, degree)[first])
     picked = coefficients[first[:, None] + np.arange(degree + 1)]
     for order in range(3):
         theirs = spline(x, nu=order)

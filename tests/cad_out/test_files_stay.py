@@ -31,7 +31,10 @@ from matstd.twin.sampling import grid_points
 def entities(text: str) -> str:
     """Entities of a STEP file without their numbers, a line each, lengths to 0.1 µm."""
     text = re.sub(r"\n *", "", text).replace(";", "\n")
-    text = re.sub(r"(?<!')#\d+,?|(?<=material-standard) [\d.]+", "", text)
+    # the kernel counts the occurrences of all assemblies that a process makes
+    text = re.sub(
+        r"(?<!')#\d+,?|(?<=material-standard) [\d.]+|(?<=USAGE_OCCURRENCE\(')\d+", "", text
+    )
     return re.sub(
         r"(?<=[(,])-?\d+\.\d*(?:E-?\d+)?", lambda m: f"{round(float(m[0]), 4) + 0.0:.4f}", text
     )

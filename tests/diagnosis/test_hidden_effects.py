@@ -25,7 +25,7 @@ HELD_OUT = 0.05
 """Held-out RMS beside the RMS of the very noise that the simulator added, of which a fit of a
 hundred parameters to seven hundred touches leaves a sample that differs by 2 %."""
 
-NOTHING = (3, "hsm600u", (), True)
+NOTHING = (3, "hsm600u", (), True, (12.0, 40.0), 5)
 SINGLE = {
     "backlash(X)": (2, "hsm600u"),
     "thermal-lag(EXC)": (5, "hsm600u"),
@@ -38,7 +38,7 @@ SLOW = {*SINGLE} - {"thermal-lag(EXC)"}
 """Reversals and expansions are found by the default tests of signs and of the search's limit."""
 TWO = (12, "hmc1995", ("backlash(Y)", "stylus-bending"))
 UNKNOWN = (2, "hsm600u", ("?pump",))
-WEAK = (14, "hmc1995", ("backlash(X)",), False, (1.5, 1.5))
+WEAK = (14, "hmc1995", ("backlash(X)",), False, (1.5, 1.5), 5)
 
 
 def added_noise(seed, machine):

@@ -18,7 +18,7 @@ from matstd.diagnosis.regression.memory import MEMORY_PASSES, _marginal
 from matstd.diagnosis.remarks import remarks
 from matstd.report.words import remark_sentence, verdict_sentence
 from matstd.twin.effects import setup_errors
-from matstd.twin.library import ordinary_model, parse_effect, proposals
+from matstd.twin.library import ordinary_model, proposals
 from matstd.twin.model import columns
 from matstd.twin.units import UM
 
@@ -203,12 +203,6 @@ def test_noise_that_remembers_is_said_to_and_nothing_is_named(noisy, tmp_path, u
     (tmp_path / "model.toml").write_text(model_text(result.fit, "run.csv"), encoding="utf-8")
     assert "held_out_um" in (tmp_path / "model.toml").read_text(encoding="utf-8")
     unchanged(answer_text(result))
-
-
-def test_a_run_whose_singular_values_the_faster_routine_does_not_find_is_diagnosed(case) -> None:
-    run = case(5, "hsm600u", ("thermal-lag(EXC)",)).run[::3]
-    lag = parse_effect("thermal-lag(EXC)", run.touches.chain)
-    assert [effect.kind for effect in diagnose(run, candidates=[lag]).found] == ["thermal-lag"]
 
 
 def test_evidence_beside_columns_of_a_wide_prior_is_that_of_all_digits() -> None:

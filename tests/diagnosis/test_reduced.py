@@ -25,7 +25,7 @@ SAME = 1e-7
 @pytest.fixture(scope="module")
 def run(case):
     """With chips, a lag along Z, and touches of unequal uncertainty."""
-    known = case(31, "hsm600u", ("thermal-lag(EZZ)",), True, (30.0, 35.0)).run
+    known = case(31, "hsm600u", ("thermal-lag(EZZ)",), True, (30.0, 35.0), 6).run
     return replace(known, u=known.u * np.where(np.arange(len(known)) % 3 == 0, 1.5, 0.9))
 
 

@@ -45,7 +45,7 @@ def test_a_probe_too_long_is_reported_beside_the_pivot(tmp_path, capsys, machine
     So a probe stated 1 mm too long and a pivot 1 mm off are one to this run. 0.3 mm are named by no
     trial of the description, but the line of B is more than four usual sizes off.
     """
-    run, text, _ = simulate_case(np.random.default_rng([5, 0]), machine, with_alike=False)
+    run, text, _ = simulate_case(np.random.default_rng([5, 0]), machine, with_alike=False, poses=5)
     run = run.replace("length_mm = 160.0", f"length_mm = {160.0 + longer}")
     lines, geometry = compared(tmp_path, capsys, run, text)
     assert not [line for line in lines if line.startswith("to copy")]
@@ -61,7 +61,8 @@ def test_a_probe_too_long_is_reported_beside_the_pivot(tmp_path, capsys, machine
 
 def test_a_pivot_that_the_run_knows_by_itself_is_one_to_copy(tmp_path, capsys):
     """The line of C in X turns with B, which nothing else of the description does."""
-    run, text, _ = simulate_case(np.random.default_rng([5, 0]), "hsm600u", with_alike=False)
+    rng = np.random.default_rng([5, 0])
+    run, text, _ = simulate_case(rng, "hsm600u", with_alike=False, poses=5)
     wrong = re.sub(r"(\[axis\.C\]\nrange = [^\n]*\npoint = )\[[^\]]*\]", r"\1[2.0, 0.0, 0.0]", text)
     assert wrong != text
     lines, _ = compared(tmp_path, capsys, run, wrong)

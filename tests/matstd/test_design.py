@@ -14,11 +14,13 @@ import rs274
 from browser import faults, opened, requests
 from commands import steps_of_work
 from figures import render_alone
+from standards import kernel_here
 from unchanged import Unchanged, facts, folded, page_text
 
 from matstd.artefact.body import Limits, read_standard
 from matstd.artefact.brief import Brief, PlacementOptions, project_file, read_project
 from matstd.artefact.compare import comparison
+from matstd.artefact.place import identifying
 from matstd.artefact.worth import CriterionOptions, TouchOptions, ball_choice, touch_curve
 from matstd.artefact.worth.touch_criterion import CRITERIA
 from matstd.cad_out.verify.conformity import FACE_LIMIT
@@ -70,7 +72,7 @@ def small_project(folder: Path, machines: int = 1, touches: int = 120, poses: in
 def with_few_sites(**fields: object) -> Brief:
     """The brief of a project for which fewer places of faces are tried."""
     made = Brief(**fields)
-    return replace(made, options=replace(made.options, sites=60))
+    return replace(made, options=replace(made.options, sites=20))
 
 
 @pytest.fixture(scope="module")
@@ -89,8 +91,10 @@ def made(tmp_path_factory: pytest.TempPathFactory, figures: dict[str, str]) -> P
     folder = tmp_path_factory.mktemp("design")
     out = folder / "out"
     with pytest.MonkeyPatch.context() as patch:
+        kernel_here(patch)
         patch.setattr(project_file, "Brief", with_few_sites)
-        patch.setattr(ball_choice, "_PLACES", 60)
+        patch.setattr(ball_choice, "_PLACES", 30)
+        patch.setattr(identifying, "_MAX_REDRAWS", 1)
         patch.setattr(comparison, "COUNTS", (4,))
         bodies = comparison.rivals
         patch.setattr(comparison, "rivals", lambda *of: dict([*bodies(*of).items()][:1]))

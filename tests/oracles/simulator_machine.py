@@ -119,8 +119,20 @@ ABOUT = {"A": about_x, "B": about_y, "C": about_z}
 
 
 def turned(a, b, c):
-    """Small rotations about the fixed x, then y, then z."""
-    return about_z(c) @ about_y(b) @ about_x(a)
+    """Small rotations about the fixed x, then y, then z: ``Rz Ry Rx`` written out."""
+    (sx, sy, sz), (cx, cy, cz), out = np.sin([a, b, c]), np.cos([a, b, c]), eye(len(a))
+    out[:, 0, 0], out[:, 1, 0], out[:, 2, 0] = cz * cy, sz * cy, -sy
+    out[:, 0, 1], out[:, 0, 2] = cz * sy * sx - sz * cx, cz * sy * cx + sz * sx
+    out[:, 1, 1], out[:, 1, 2] = sz * sy * sx + cz * cx, sz * sy * cx - cz * sx
+    out[:, 2, 1], out[:, 2, 2] = cy * sx, cy * cx
+    return out
+
+
+def about_point(T, point, move=0.0):
+    """Rotations (N, 4, 4) about a point, (3,) or (N, 3), and then a displacement."""
+    point = np.broadcast_to(point, (len(T), 3))
+    T[:, :3, 3] = move + point - (T[:, :3, :3] @ point[:, :, None])[:, :, 0]
+    return T
 
 
 def undone(T):
@@ -146,11 +158,10 @@ def component_motion(axis, q, errors):
     if not any(f"E{letter}{axis.name}" in errors for letter in "XYZABC"):
         return eye(n)
     six = [of(errors, f"E{letter}{axis.name}", n) for letter in "XYZABC"]
-    lever = np.tile(axis.point, (n, 1))
+    lever = axis.point
     if not axis.rotary:  # a linear axis carries its reference point along, where its body goes
         lever = lever + (-q if axis.primed else q)[:, None] * axis.direction
-    move = np.stack(six[:3], axis=1)
-    E = shifted(move) @ shifted(lever) @ turned(*six[3:]) @ shifted(-lever)
+    E = about_point(turned(*six[3:]), lever, np.stack(six[:3], axis=1))
     return undone(E) if axis.primed else E
 
 
@@ -158,9 +169,8 @@ def nominal_motion(axis, travel):
     """Travel of the body along, or about, an axis that stands where it should."""
     if not axis.rotary:
         return shifted(travel[:, None] * axis.direction)
-    here = np.tile(axis.point, (len(travel), 1))
     main = int(np.flatnonzero(axis.direction)[0])
-    return shifted(here) @ ABOUT["ABC"[main]](travel) @ shifted(-here)
+    return about_point(ABOUT["ABC"[main]](travel), axis.point)
 
 
 def body_motion(axis, q, errors):
@@ -178,19 +188,15 @@ def body_motion(axis, q, errors):
         return shifted((sign * (q + e[main]))[:, None] * direction)
     angle = sign * (q + r[main])
     e[main], r[main] = np.zeros(n), np.zeros(n)
-    here = np.tile(axis.point, (n, 1))
-    line = shifted(np.stack(e, axis=1)) @ shifted(here) @ turned(*r) @ shifted(-here)
-    turn = shifted(here) @ ABOUT["ABC"[main]](angle) @ shifted(-here)
-    return line @ turn @ undone(line)
+    line = about_point(turned(*r), axis.point, np.stack(e, axis=1))
+    return line @ about_point(ABOUT["ABC"[main]](angle), axis.point) @ undone(line)
 
 
 def set_up_motion(point, letter, errors, n):
     if not any(f"E{c}0{letter}" in errors for c in "XYZABC"):
         return eye(n)
     six = [of(errors, f"E{c}0{letter}", n) for c in "XYZABC"]
-    here = np.tile(point, (n, 1))
-    displaced = shifted(np.stack(six[:3], axis=1))
-    return displaced @ shifted(here) @ turned(*six[3:]) @ shifted(-here)
+    return about_point(turned(*six[3:]), point, np.stack(six[:3], axis=1))
 
 
 def table_and_tool(machine, q, errors):

@@ -16,7 +16,7 @@ from matstd.twin.fields import (
     refusal,
     travelling_axes,
 )
-from matstd.twin.machine import Chain, Ranges, ShapeName, Symbol, shape
+from matstd.twin.machine import Chain, Ranges, ShapeName, Symbol
 from matstd.twin.model import Amounts, Declared, Effect, Kind, Parameter
 from matstd.twin.record import Touches
 from matstd.twin.units import DEG
@@ -62,8 +62,7 @@ class ComponentError(Declared):
         return (Parameter("amplitude", self.symbol.unit, self.sd),)
 
     def amounts(self, touches: Touches) -> Amounts:
-        q, link = touches.reading(self.symbol.link), touches.chain.link(self.symbol.link)
-        return (shape(self.shape, q, link, self.periods, self.phase),)
+        return (touches.shape(self.symbol.link, self.shape, self.periods, self.phase),)
 
 
 def component(chain: Chain, name: str, shape: ShapeName, **options: float) -> ComponentError:

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from matstd.twin.errors import NotReachable, ShapeMismatch
-from matstd.twin.frames import Array, apply, inverse, pose, rotation, skew, turned_about
+from matstd.twin.frames import Array, apply, inverse, pose, skew
 from matstd.twin.machine.chain import Chain
 from matstd.twin.machine.contribution import Contribution, Where
 from matstd.twin.machine.link import Link
@@ -56,13 +56,18 @@ def _readings_of(chain: Chain, link: Link, q: Array) -> Array:
     return np.zeros(len(q)) if link.kind == "fixed" else q[:, chain.axis_index(link.name)]
 
 
-def _motion(link: Link, travel: Array, direction: Array) -> Array:
-    """Pose (N, 4, 4) of a link's body for the travel (N,) of that body along `direction`."""
+def _after(R: Array, t: Array, link: Link, travel: Array) -> tuple[Array, Array]:
+    """Rotation (N, 3, 3) and place (N, 3) of a body for the travel (N,) of a link that moves it."""
     if link.kind == "linear":
-        return pose(t=travel[:, None] * direction)
-    if link.kind == "rotary":
-        return turned_about(link.point, rotation(travel[:, None] * direction))
-    return pose(t=np.zeros((len(travel), 3)))
+        return R, t + travel[:, None] * (R @ link.direction)
+    turned = R @ _about(link.direction, travel)
+    return turned, t + (R - turned) @ link.point
+
+
+def _about(direction: Array, angle: Array) -> Array:
+    """Rotations (N, 3, 3) by angles (N,) about one unit vector, exact for any angle (Rodrigues)."""
+    S, angle = skew(direction), angle[:, None, None]
+    return np.eye(3) + np.sin(angle) * S + 2.0 * np.sin(0.5 * angle) ** 2 * (S @ S)
 
 
 def _lever_point(link: Link, reading: Array) -> Array:
@@ -92,15 +97,15 @@ def carriers(chain: Chain, q: Array) -> tuple[Array, Array, Array]:
     T_machine_carrier = np.empty((len(q), len(chain.links), 4, 4))
     ends = []
     for side in _sides(chain):
-        T = np.broadcast_to(np.eye(4), (len(q), 4, 4))
+        R, t = np.broadcast_to(np.eye(3), (len(q), 3, 3)), np.zeros((len(q), 3))
         for i in side:
             link = chain.links[i]
-            T_machine_carrier[:, i] = T
+            T_machine_carrier[:, i] = pose(R, t)
             if link.kind != "fixed":
-                travel = _sign(link) * _readings_of(chain, link, q)
-                T = T @ _motion(link, travel, link.direction)
-        ends.append(T)
-    return T_machine_carrier, ends[0] @ pose(t=chain.table_origin), ends[1]
+                R, t = _after(R, t, link, _sign(link) * _readings_of(chain, link, q))
+        ends.append((R, t))
+    (R_table, t_table), tool = ends
+    return T_machine_carrier, pose(R_table, t_table + R_table @ chain.table_origin), pose(*tool)
 
 
 def table_to_tool(chain: Chain, q: Array) -> Array:
@@ -119,8 +124,8 @@ def tip(chain: Chain, q: Array, length: Array | float) -> Array:
     return moved_tip(chain, checked_readings(chain, q), length, None)
 
 
-def place_as_twist(chain: Chain, q: Array) -> Array:
-    """What a displaced line, workpiece or tool does, as twists of the same link, first order.
+def place_as_twist(chain: Chain, q: Array, twist: Array) -> Array:
+    """What a displaced line, workpiece or tool does, as by twists of the same link, first order.
 
     With the reading q, direction d, body rotation R, s = +1 on the tool side and -1 on the
     workpiece side, (e, r) the displacement and k the component of the axis's own letter: a linear
@@ -129,26 +134,27 @@ def place_as_twist(chain: Chain, q: Array) -> Array:
     reading whatever the direction; the tool ``(e, r)``; the workpiece ``-(e, r)``, since the twist
     is tool minus workpiece.
 
+    Args:
+        twist: What a unit of every component of the twists does, (N, L, 6, 3).
+
     Returns:
-        Shape (N, L, 6, 6): [..., i, j] is component j of the twist per unit of component i of the
-        displacement.
+        The same of every component of the displacements, (N, L, 6, 3).
     """
-    q = checked_readings(chain, q)
-    out = np.zeros((len(q), len(chain.links), 6, 6))
+    out = np.zeros_like(twist)
     for i, link in enumerate(chain.links):
+        shifts, turns, there = twist[:, i, :3], twist[:, i, 3:], out[:, i]
         if link.kind == "fixed":
-            out[:, i] = _sign(link) * np.eye(6)
+            there[:] = _sign(link) * twist[:, i]
             continue
         d, reading = link.direction, _readings_of(chain, link, q)
         if link.kind == "linear":
-            out[:, i, link.own, :3] = d
-            out[:, i, 3:, :3] = reading[:, None, None] * np.cross(np.eye(3), d)
+            there[:, link.own] = d @ shifts
+            there[:, 3:] = reading[:, None, None] * (np.cross(np.eye(3), d) @ shifts)
         else:
-            R = rotation((_sign(link) * reading)[:, None] * d)
-            moved = np.swapaxes(_sign(link) * (np.eye(3) - R), -1, -2)
-            out[:, i, :3, :3] = moved
-            out[:, i, 3:, 3:] = moved
-            out[:, i, 3 + link.own, 3:] = d
+            R = np.swapaxes(_about(d, _sign(link) * reading), -1, -2)
+            there[:, :3] = _sign(link) * (shifts - R @ shifts)
+            there[:, 3:] = _sign(link) * (turns - R @ turns)
+            there[:, 3 + link.own] = d @ turns
     return out
 
 
@@ -173,7 +179,7 @@ def reach(chain: Chain, q: Array, length: Array | float) -> Reach:
     points = [_lever_point(link, _readings_of(chain, link, q)) for link in chain.links]
     arm = np.einsum("nlk,nlki->nli", local - np.stack(points, axis=1), axes)
     twist = np.concatenate([axes, axes @ skew(arm)], axis=2)
-    return Reach(twist, place_as_twist(chain, q) @ twist)
+    return Reach(twist, place_as_twist(chain, q, twist))
 
 
 def exact_tip(chain: Chain, q: Array, length: Array | float, contribution: Contribution) -> Array:

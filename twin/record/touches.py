@@ -14,10 +14,12 @@ from matstd.twin.frames import Array, IntArray, Mask, apply, inverse, turn
 from matstd.twin.machine import (
     Chain,
     Reach,
+    ShapeName,
     Where,
     checked_readings,
     linear_motion,
     reach,
+    shape,
     table_to_tool,
     tip,
 )
@@ -205,6 +207,19 @@ class Touches:
         """
         q = self.q if self.commanded is None else self.commanded
         return q[:, self.chain.axis_index(axis)]
+
+    def shape(self, axis: str, name: ShapeName, periods: float, phase: float) -> Array:
+        """`matstd.twin.machine.shape` of one axis, made once for its six errors, (N,)."""
+        key = axis, name, periods, phase
+        if key not in self._shapes:
+            made = shape(name, self.reading(axis), self.chain.link(axis), periods, phase)
+            made.flags.writeable = False
+            self._shapes[key] = made
+        return self._shapes[key]
+
+    @cached_property
+    def _shapes(self) -> dict[tuple[str, ShapeName, float, float], Array]:
+        return {}
 
     def last_move(self, axis: str) -> Array:
         """Sign of the last motion of one axis, (N,); raises UnknownAxis."""
