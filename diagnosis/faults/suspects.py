@@ -17,7 +17,7 @@ from matstd.twin.frames import Array
 from matstd.twin.machine import Chain, Link
 from matstd.twin.model import Effect, traits
 from matstd.twin.record import Run, Touches, aligned, computed_deviation
-from matstd.twin.units import DEG
+from matstd.twin.units import DEG, LENGTHS
 
 FREE_LENGTH = 20.0
 """Standard deviation (mm) of a length that may be stated wrongly: a stylus of another length."""
@@ -35,6 +35,7 @@ class Fault(Enum):
     ROTARY_ORDER = "rotary axes in the other order"
     OTHER_SIDE = "axis on the other side of the chain"
     RADIANS = "radians in a column of degrees"
+    INCHES = "inches in linear columns"
     NORMALS_INWARD = "normals into the standard"
     TOOL_LENGTH = "tool length"
     BALL_RADIUS = "ball radius"
@@ -79,6 +80,9 @@ def suspects(run: Run, is_absurd: bool) -> Iterator[Suspect]:
         q = t.q.copy()
         q[:, [t.chain.axis_index(axis) for axis in axes]] /= DEG
         yield _with_touches(run, Fault.RADIANS, axes, replace(t, q=q))
+    q = t.q.copy()
+    q[:, list(t.chain.linear_columns)] *= dict(LENGTHS)["inches"]
+    yield _with_touches(run, Fault.INCHES, t.chain.linear_axes, replace(t, q=q))
     yield _with_touches(run, Fault.NORMALS_INWARD, (), replace(t, normal=-t.normal))
 
 

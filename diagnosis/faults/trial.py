@@ -33,7 +33,7 @@ from matstd.twin.errors import NotEnoughData
 from matstd.twin.frames import Array, apply, inverse
 from matstd.twin.library import ordinary_model
 from matstd.twin.model import Effect, Model, columns, traits
-from matstd.twin.record import Run, Setup, Touches
+from matstd.twin.record import Run, Setup, Touches, computed_deviation
 
 MAX_TOUCHES = 400
 """Most touches that suspects are tried on. More change no answer, and thirty suspects take
@@ -117,7 +117,12 @@ def description_faults(
 
 
 def faults_of_refused(run: Run) -> tuple[DescriptionFault, ...]:
-    """The same for a run that its reader has refused; nothing where not even that can be fitted."""
+    """The same for a run that its reader has refused; nothing where not even that can be fitted.
+
+    Of a touching ball the readings are looked at: they may contradict stated deviations.
+    """
+    if run.touches.instrument.is_ball_on_standard:
+        run = replace(run, deviation=computed_deviation(run.touches))
     try:
         return description_faults(fit_run(run, ordinary_model(run.touches.chain)))
     except (NotEnoughData, np.linalg.LinAlgError):

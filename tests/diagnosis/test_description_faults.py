@@ -63,6 +63,23 @@ def test_one_column_in_radians_is_named_alone(texts) -> None:
     assert (fault.fault, fault.axes, fault.alike) == (Fault.RADIANS, ("C",), ())
 
 
+@pytest.mark.parametrize("is_stated", [False, True])
+def test_linear_columns_in_inches_are_named(texts, is_stated: bool) -> None:
+    """With deviations that the readings contradict, and without any."""
+    run, machine = texts
+    head = [line for line in run.splitlines() if line.startswith("#")]
+    names, *rows = [line.split(",") for line in run.splitlines()[len(head) :]]
+    for at in (names.index(f"{axis}_mm") for axis in "XYZ"):
+        for row in rows:
+            row[at] = f"{float(row[at]) / 25.4:.9f}"
+    if is_stated and "dev_um" not in names:
+        names = [*names, "dev_um"]
+        rows = [[*row, f"{5.0 * (-1) ** i:.1f}"] for i, row in enumerate(rows)]
+    (fault,) = faults_in("\n".join([*head, *map(",".join, [names, *rows])]) + "\n", machine)
+    assert (fault.fault, set(fault.axes)) == (Fault.INCHES, {"X", "Y", "Z"})
+    assert "are inches, not mm" in fault_sentences([fault])[0]
+
+
 def test_rotary_axes_in_the_other_order_are_named_with_the_chain(texts) -> None:
     run, machine = texts
     (fault,) = faults_in(run, machine.replace("[w C' B' X'", "[w B' C' X'"))
