@@ -155,7 +155,7 @@ def _verdict_alone(diagnosis: Diagnosis) -> str:
     doubtful = len(others) - len(found)
     laws = diagnosis.laws if diagnosis.laws is not None and diagnosis.laws.laws else None
     if laws is not None and (diagnosis.withdrawn or diagnosis.verdict is Verdict.UNEXPLAINED):
-        return _of_law(diagnosis, laws, named if diagnosis.withdrawn else [*named, *found])
+        return _of_law(diagnosis, laws, [*named, *found])
     also = f" Added by name: {'; '.join(named)}." if named else ""
     them = "it" if len(steps) == 1 else "them"
     them += "" if laws is None else " and the law" if len(laws.laws) == 1 else " and the laws"
