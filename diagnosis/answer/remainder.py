@@ -5,7 +5,7 @@ positions of the axis that it depends on describes whatever repeats over that ax
 than it is stated has only one witness: the same touch again.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -27,7 +27,7 @@ from matstd.diagnosis.search import (
     tables_along,
 )
 from matstd.twin.frames import IntArray
-from matstd.twin.library import parse_effect
+from matstd.twin.model import Effect
 
 MAX_DEPENDENCES = 2  # most patterns that `depends_on` reports, one after the other
 MAX_TRIED = 6  # library effects, the best ones by themselves, that are tried beside what was found
@@ -41,6 +41,7 @@ def nearest(
     gross: GrossErrors,
     last: Fit,
     candidates: Sequence[Candidate],
+    library: Mapping[str, Effect],
     depends_on: Sequence[Dependence],
     is_driver_missing: bool,
 ) -> tuple[Offer, ...]:
@@ -48,13 +49,14 @@ def nearest(
 
     Args:
         candidates: Library effects by themselves, best first.
+        library: All of them by name.
         is_driver_missing: Whether what is left follows a driver that was not recorded: no law of
             another one is offered for it.
     """
     known = {sized.effect.name for sized in found}
     certain = {c.effect for c in candidates if c.p_value < POLICY.close_p} - known
-    library = [c.effect for c in candidates if c.effect not in known][:MAX_TRIED]
-    effects = [parse_effect(name, task.model.chain) for name in library]
+    names = [c.effect for c in candidates if c.effect not in known][:MAX_TRIED]
+    effects = [library[name] for name in names]
     if is_driver_missing:
         effects = [e for e in effects if not follows_driver(e)]
     tables = tables_along(last.run.touches, [d.variable for d in depends_on])

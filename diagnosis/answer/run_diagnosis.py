@@ -174,6 +174,7 @@ def _result(
     candidates = ranked_candidates(final)
     depends_on = dependences(left if parts.remains.is_real else start)
     beside = (*task.added, *final.effects)
+    known = {grid.effect.name: grid.effect for grid in final.library.grids}
     progress(0.8, "what the run could have shown")
     seen = final.library.sample
     is_cured = verdict is not Verdict.UNEXPLAINED and len(steps) > 1
@@ -202,7 +203,9 @@ def _result(
             *ended,
         ),
         choice=choice,
-        nearest=nearest(task, beside, gross, last, candidates, depends_on, bool(final.drifts))
+        nearest=nearest(
+            task, beside, gross, last, candidates, known, depends_on, bool(final.drifts)
+        )
         if parts.remains.is_real
         else (),
         repeat=repeat if verdict is Verdict.UNDECIDED else repeat[:0],

@@ -49,6 +49,7 @@ MIN_SIZE = 3.0
 """Size over its uncertainty from which a region is reported. One that stands out only against those
 found before it, as the end of a drift does, may be off by nothing."""
 
+NO_LEVER = 1e-9  # mm per mm or rad: the rounding of an arm of a metre is a thousandth of this
 PARTS = ("shift-x", "shift-y", "shift-z", "bias")
 """Carriers beside the components of the axes: the standard, and the reading along the normal."""
 
@@ -198,8 +199,10 @@ def _wrong(
     """Regions in which an error is off by a constant, each looked for beside those before it."""
     whole = ResidualSpace.of(fit)
     others = PARTS if space.touches.instrument.has_standard else PARTS[-1:]
-    offered = bearers(space.touches, lambda C: _white(space, C), others)
-    columns = [b.carrier.columns(space.touches)[:, 0] for b in offered]
+    each = bearers(space.touches, lambda C: _white(space, C), others)
+    moving = [(b, b.carrier.columns(space.touches)[:, 0]) for b in each]
+    # an axis of rotation through the ball turns it on its spot: its column is rounding
+    offered, columns = zip(*((b, c) for b, c in moving if np.abs(c).max() > NO_LEVER), strict=True)
     for _ in range(MOST_REGIONS):
         measures = [_Constant(space, column, drawn) for column in columns]
         found = best_box(measures, known, len(fit.used))

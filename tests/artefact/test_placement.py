@@ -214,9 +214,8 @@ def test_every_patch_says_what_it_is_for(placement, chain):
     assert len(named) >= 8  # patches are for different errors
 
 
-def test_the_same_seed_gives_the_same_standard(reach, workspace, monkeypatch):
-    """A small design says it as well as a large one, and rivals have no part in it."""
-    monkeypatch.setattr("matstd.artefact.place.placement.compare", lambda *_: ((), ()))
+def test_the_same_seed_gives_the_same_standard(reach, workspace):
+    """A small design says it as well as a large one."""
     options = PlacementOptions(patches=3, sites=30, choice=TouchOptions(60, 5, 30))
     first, again = (
         design_standard(brief_of(reach, workspace, options), np.random.default_rng(3))
@@ -235,14 +234,14 @@ def test_too_many_patches_for_a_blank_are_refused(reach, workspace):
 
 
 def test_a_blank_larger_than_the_table_is_refused(reach, workspace):
-    large = Blank(base=Base(half_size=(180.0, 140.0)))
-    with pytest.raises(NotBuildable, match="360 x 280 mm is larger than the table, diameter 320"):
+    large = Blank(base=Base(half_size=(250.0, 140.0)))
+    with pytest.raises(NotBuildable, match="500 x 280 mm is larger than the table, diameter"):
         design_standard(brief_of(reach, workspace, OPTIONS, large), np.random.default_rng(1))
 
 
 def test_limits_that_nothing_meets_are_named(reach, workspace):
     light = Blank(limits=Limits(max_mass=5.0))
-    with pytest.raises(NotBuildable, match=r"no choice of 5 patches .*mass is .* limit 5\.000 kg"):
+    with pytest.raises(NotBuildable, match=r"the lightest standard found weighs .* kg, limit 5 kg"):
         design_standard(brief_of(reach, workspace, OPTIONS, light), np.random.default_rng(1))
 
 
@@ -317,8 +316,8 @@ def test_other_families_meet_every_limit_and_identify_as_balls_do(reach, workspa
         built = {one.family for one in made.families if not one.refused}
         assert {"balls", "faces", "flat"} <= built
         own = next(one for one in made.families if one.family == made.family)
-        fit = [f for f in made.families if f.family != "balls" and f.rms_user <= 1.02 * balls]
-        assert own.signal == max((f.signal for f in fit), default=own.signal)
+        fit = [f for f in made.families if f.rms_user <= 1.02 * balls]
+        assert own.signal == max(f.signal for f in fit)
     own = next(one for one in made.families if one.family == made.family)
     assert own.rms_user == pytest.approx(made.own.rms_user, rel=1e-9)
     assert own.touches == 160
