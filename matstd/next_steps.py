@@ -15,7 +15,8 @@ PLANTED = "thermal-lag(EZZ)=12um,tau=15min"  # in a trial on the twin: what the 
 YOUR_TABLE = "; --table-mm is the size of your table"  # a template states that of its kind
 RUN = "RUN.csv"  # a run that is still to be measured
 FEWEST_OF_A_TREND = 3  # runs of one machine, as `matstd trend` asks
-MODELLED = ("standard", "model", "start", "pitch", "effects")  # options on what runs are held to
+MODELLED = ("standard", "model", "start", "pitch", "effects")
+"""Options on what a run is compared with."""
 STATED = (
     "datum",
     "within",

@@ -71,9 +71,9 @@ def learn_remainder(
 
 
 def _of_library(alone: Learning, found: Sequence[Effect]) -> list[Effect]:
-    """Effects of whose kind the library explains a law better that was learnt in their place.
+    """Effects of a kind by which the library explains a law in their place as well or better.
 
-    They stay, and only the others may be imitators.
+    They stay; only the others may be imitators.
     """
     kinds = {one.library.effect.kind for one in alone.laws if one.library and one.is_of_library}
     return [e for e in found if e.kind in kinds]

@@ -199,10 +199,13 @@ def _wrong(
     """Regions in which an error is off by a constant, each looked for beside those before it."""
     whole = ResidualSpace.of(fit)
     others = PARTS if space.touches.instrument.has_standard else PARTS[-1:]
-    each = bearers(space.touches, lambda C: _white(space, C), others)
-    moving = [(b, b.carrier.columns(space.touches)[:, 0]) for b in each]
-    # an axis of rotation through the ball turns it on its spot: its column is rounding
-    offered, columns = zip(*((b, c) for b, c in moving if np.abs(c).max() > NO_LEVER), strict=True)
+    offered, columns = [], []
+    for bearer in bearers(space.touches, lambda C: _white(space, C), others):
+        column = bearer.carrier.columns(space.touches)[:, 0]
+        # what turns the ball on its spot has a column of rounding alone
+        if np.abs(column).max() > NO_LEVER:
+            offered.append(bearer)
+            columns.append(column)
     for _ in range(MOST_REGIONS):
         measures = [_Constant(space, column, drawn) for column in columns]
         found = best_box(measures, known, len(fit.used))

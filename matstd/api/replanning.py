@@ -178,8 +178,8 @@ def planned_visit(
     for name, visit in visits.items():
         here = [program for program in programs if program.heading.setup.name == name]
         words, first = next(iter(by_probe(here, control).items()))
-        own = {replace(words, prefix=_next_prefix(words.prefix)): first}
-        stations += _stations(own, standard, chain, here[0].heading.setup, visit)
+        words = words.of_visit(f"{name}_{SEARCH}")
+        stations += _stations({words: first}, standard, chain, here[0].heading.setup, visit)
     resumed = _after_standstill(stations)
     conditions = visit_conditions(schedule, resumed)
     return Replanned(
@@ -191,12 +191,6 @@ def planned_visit(
         left_alone=(),
         conditions=tuple(conditions),
     )
-
-
-def _next_prefix(prefix: str) -> str:
-    """First letters of the programs of a visit: on the control the files of the run stay."""
-    before, visit, number = re.match(r"(.*?)(V(\d*))?\Z", prefix).groups()  # type: ignore[union-attr]
-    return f"{before}V{int(number or 1) + 1}" if visit else f"{before}V"
 
 
 def _on_twin(stations: Sequence[Station], chain: Chain) -> tuple[int, float]:

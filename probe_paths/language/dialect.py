@@ -1,9 +1,10 @@
 """What differs between controls and workshops, and which Q parameters our programs use."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import IntEnum
 from typing import Literal
 
+from matstd.probe_paths.language.text import MAX_NAME
 from matstd.probe_paths.plan import Sensor
 
 
@@ -124,6 +125,23 @@ class Dialect:
     is_tilted: bool = False
     is_oriented: bool = False  # programs orient the spindle after the call of the probe
     sensors: tuple[Sensor, ...] = ()  # temperatures that the control hands to programs
+
+    def of_visit(self, longest: str) -> "Dialect":
+        """The same for a planned visit: on the control the programs and logs of the run stay.
+
+        Args:
+            longest: What the longest name has behind its first letters and `_`, such as `A_LOC`.
+                Where it is long, fewer letters of the run's names are left.
+
+        Example:
+            >>> [Dialect().of_visit(rest).prefix for rest in ("A_LOC", "CORNER_33_LOC")]
+            ['MSV', 'MV']
+        """
+        before, visit, number = self.prefix.rpartition("V")
+        is_of_visit = visit and (number.isdigit() or not number)
+        own = f"V{int(number or 1) + 1}" if is_of_visit else "V"
+        room = max(MAX_NAME - len(f"{own}_{longest}"), 0)
+        return replace(self, prefix=(before if is_of_visit else self.prefix)[:room] + own)
 
     def on_control(self, name: str) -> str:
         """Full name of a file on the control."""

@@ -47,10 +47,10 @@ _TOOLS = (
 )
 _TEST = (
     "Zero an indicator at the datum, move {moved} alone, to {place}, and read it again: along the "
-    "motion against a gauge block, across it against a straightedge. Look along the way first: "
-    "nothing here knows table, clamps and spindle. The change is exact; the other figures carry "
-    "the uncertainty of the model. If the indicator changes in the opposite direction (sign "
-    "wrong), write the tables again with `--opposite {name}`."
+    "motion against a gauge block, across it against a straightedge. Check first that the way is "
+    "free: this page does not know the table, the clamps and the spindle. The change is exact; the "
+    "other figures carry the uncertainty of the model. If the indicator changes in the opposite "
+    "direction (sign wrong), write the tables again with `--opposite {name}`."
 )
 
 

@@ -143,9 +143,7 @@ def _line(row: GeometryRow) -> GeometryLine:
     is_same = row.unit == "mm" or not row.lever or in_um == value_words(row).removesuffix("µrad")
     part = row.by_laws
     if part is not None and abs(part.value) > row.estimate.u:
-        notes.append(
-            f"of this {_value(part.value, part.u, factor, unit)} by laws or tables over a reading"
-        )
+        notes.append(PART.format(_value(part.value, part.u, factor, unit)))
     if row.change is not None and not row.has_changed:
         difference = _value(row.change.value, row.change.u, factor, unit)
         notes.append(f"no change beyond chance ({difference})")

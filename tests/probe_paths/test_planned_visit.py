@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 from unchanged import folded, page_text
 
-from matstd.api.replanning import _next_prefix, planned_visit
+from matstd.api.replanning import planned_visit
+from matstd.probe_paths.language import Dialect
+from matstd.probe_paths.language.text import MAX_NAME
 from matstd.probe_paths.locate.planned_visit import VisitSchedule, read_visit
 from matstd.twin.errors import BadFile
 from matstd.twin.units import DEG
@@ -95,8 +97,12 @@ def test_touches_beside_the_standard_are_refused(design, visit) -> None:
 
 
 def test_the_programs_of_a_visit_replace_none_of_the_run() -> None:
-    prefixes = ["MS"]
+    """`MS_CORNER_33_LOC` has the 16 letters of the oldest software."""
+    words = [Dialect()]
     for _ in range(3):
-        prefixes.append(_next_prefix(prefixes[-1]))
-    assert prefixes == ["MS", "MSV", "MSV2", "MSV3"]
-    assert _next_prefix("MS30") == "MS30V"
+        words.append(words[-1].of_visit("A_LOC"))
+    assert [one.prefix for one in words] == ["MS", "MSV", "MSV2", "MSV3"]
+    assert Dialect(prefix="MS30").of_visit("A_LOC").prefix == "MS30V"
+    long = Dialect().of_visit("CORNER_33_LOC")
+    assert (long.prefix, long.of_visit("CORNER_33_LOC").prefix) == ("MV", "V2")
+    assert len(f"{long.prefix}_CORNER_33_LOC") == MAX_NAME
