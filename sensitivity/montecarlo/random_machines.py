@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -158,16 +159,9 @@ def volumetric(
     worst = (reference, max(1, round(WORST_SHARE * reference))) if recurrence else (0, 0)
     seed = seed_words(rng)
 
-    def prepare() -> SharedArrays:
-        return SharedArrays(
-            population=population,
-            G=first_order(population.model, q, length),
-            width=width,
-            tolerance=tolerance,
-            worst=worst,
-            threads=None if workers is None else 1,
-        )
-
+    threads = None if workers is None else 1
+    # of module level, without the workers: a cluster takes it to another process
+    prepare = partial(_shared_arrays, population, q, length, width, tolerance, worst, threads)
     tally, stabiliser = Tally(width, tolerance), Stabiliser(digits) if digits else None
     for found in in_order(workers, prepare, count_batch, batches(draws, rng)):
         tally.add(found)
@@ -181,6 +175,26 @@ def volumetric(
             break
     sd = moments(tally.count, tally.sum, tally.squares)[1]
     return tally.result(seed, recurrence, stabiliser.stability(sd) if stabiliser else None)
+
+
+def _shared_arrays(
+    population: Population,
+    q: Array,
+    length: float | Array,
+    width: Array,
+    tolerance: float,
+    worst: tuple[int, int],
+    threads: int | None,
+) -> SharedArrays:
+    """What all batches share: the lever of every error at every pose."""
+    return SharedArrays(
+        population=population,
+        G=first_order(population.model, q, length),
+        width=width,
+        tolerance=tolerance,
+        worst=worst,
+        threads=threads,
+    )
 
 
 def _statistics(found: Lengths, width: Array) -> Array:

@@ -138,7 +138,9 @@ def score_factor(dependence: Dependence, low: Array, high: Array) -> Array:
             f"be correlated so much; {share:.3g} times these correlations are possible"
         )
     values, vectors = np.linalg.eigh(rho)
-    return vectors * np.sqrt(np.maximum(values, 0.0))
+    # the root of a rounding of zero would be a difference of 1e-8 between errors that are equal
+    rounding = len(values) * np.finfo(float).eps * values[-1]
+    return vectors * np.sqrt(np.where(values > rounding, values, 0.0))
 
 
 def _smallest(matrix: Array) -> float:

@@ -90,8 +90,10 @@ def own_cluster(tmp_path):
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("compiled_loops")  # further processes count with them
 def test_workers_of_a_cluster_give_the_same_bits_and_may_die(study, own_cluster, capfd):
-    run, local = study
+    run, _ = study
+    local = run(None)
     with cluster(own_cluster.address, START) as client:
         client.wait_for_workers(2, timeout=START)
         same(run(client), local)
