@@ -23,7 +23,7 @@ MACHINES = {
     "hsm600u": "[w C' B' X' f Y Z (C1) t]",
     "machines/head-table": "[w C' X' f Y Z B (C1) t]",
     "machines/trunnion": "[w C' A' Y' f X Z (C1) t]",
-    "machines/gantry": "[w f X Y Z C A t]",
+    "machines/gantry": "[w f X Y Z C A (C1) t]",
     "machines/vertical": "[w X' Y' f Z (C1) t]",
     "machines/horizontal": "[w B' Z' f X Y (C1) t]",
     "machines/four-axis": "[w A' X' Y' f Z (C1) t]",

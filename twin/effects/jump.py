@@ -11,7 +11,7 @@ from typing import Self
 
 import numpy as np
 
-from matstd.twin.fields import ComponentSymbol, moved_components
+from matstd.twin.fields import ComponentSymbol, changing_components
 from matstd.twin.frames import Array
 from matstd.twin.model import Amounts, Declared, Inner, Kind
 from matstd.twin.record import Touches
@@ -73,7 +73,7 @@ class Jump(Declared):
 def propose(touches: Touches) -> Iterable[Jump]:
     """Every component of an axis that moved in a test without times, whose cycles come again."""
     for clock in filter(None, clocks(touches)):
-        for symbol in moved_components(touches):
+        for symbol in changing_components(touches):
             yield Jump(symbol, clock)
 
 

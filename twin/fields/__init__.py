@@ -61,6 +61,17 @@ def moved_components(touches: Touches) -> Iterator[Symbol]:
     return components_of(touches, moving_axes(touches) or list(touches.chain.axes[-1:]))
 
 
+def changing_components(touches: Touches) -> Iterator[Symbol]:
+    """Component errors that may change with time or a driver, in the order of the symbols.
+
+    Those of the axes that moved, and of the axis next to the tool where a head turned: errors of an
+    axis keep the directions of the machine, and a spindle grows along the tool (ISO 230-3).
+    """
+    moving, chain = moving_axes(touches), touches.chain
+    is_turned = any(axis in moving for axis in chain.tool_rotary_axes)
+    return components_of(touches, [*moving, chain.axes[-1]] if is_turned or not moving else moving)
+
+
 def varies(values: Array) -> bool:
     """Whether a record has more than one value, and no gap."""
     return bool(np.all(np.isfinite(values)) and np.ptp(values) > 1e-6)

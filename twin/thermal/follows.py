@@ -12,7 +12,7 @@ from matstd.twin.fields import (
     ComponentSymbol,
     Refuse,
     SensorName,
-    moved_components,
+    changing_components,
     sensors,
 )
 from matstd.twin.frames import Array
@@ -104,7 +104,7 @@ def follower(touches: Touches, symbol: Symbol, drive: str) -> Effect:
 def _each(touches: Touches, names: Iterable[str]) -> Iterable[Effect]:
     """Every component of every axis that moved, after each of some drives."""
     for drive in names:
-        for symbol in moved_components(touches):
+        for symbol in changing_components(touches):
             yield follower(touches, symbol, drive)
 
 

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import numpy as np
 
-from matstd.twin.fields import Argument, ComponentSymbol, Refuse, moved_components
+from matstd.twin.fields import Argument, ComponentSymbol, Refuse, changing_components
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain
 from matstd.twin.model import Amounts, Declared, Kind, Parameter, Title, scanned
@@ -106,7 +106,7 @@ def propose(touches: Touches) -> Iterable[ThermalLag]:
     if np.ptp(touches.since_start) > 0.0:
         for drive in ("", *drives(touches)):
             step = step_of(touches, drive)
-            for symbol in moved_components(touches):
+            for symbol in changing_components(touches):
                 yield ThermalLag(symbol, drive, step=step)
 
 
