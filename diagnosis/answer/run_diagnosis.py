@@ -63,11 +63,14 @@ from matstd.diagnosis.fit import Prior, prior_for
 from matstd.diagnosis.geometry import learnt_geometry
 from matstd.diagnosis.remarks import What, noticed, remarks
 from matstd.diagnosis.residual import regions
-from matstd.diagnosis.search import MOST_SETS, DiagnosisTask, refined_named
+from matstd.diagnosis.search import MOST_SETS, DiagnosisTask, SearchState, refined_named
 from matstd.twin.compute import one_blas_thread
 from matstd.twin.library import ordinary_model
 from matstd.twin.model import Effect, Model, traits
 from matstd.twin.record import Run, with_commanded, without_copies
+
+MAX_SUITED = 3
+"""Most searches with a wider prior; none is needed where no error was drawn to zero."""
 
 
 @one_blas_thread()
@@ -121,9 +124,7 @@ def _diagnosed(
     """What a task lacks; arguments as of `diagnose`."""
     task, library = _offered(task, named, candidates, progress)
     single = [e for e in library if not traits(e).is_shrunk]
-    task, final = search_with_memory(task, single, progress)
-    if task.model.chain.joints:  # errors of their lines bend like effects that are missing
-        task = task.suited(final.effects)
+    task, final = _searched(replace(task, prior=task.suited(()).prior), single, progress)
     progress(0.5, "what cannot be distinguished")
     tested, steps = significant_effects(task, final)
     choice = chosen_by_prediction(task, tested.state, library, progress)
@@ -131,6 +132,31 @@ def _diagnosed(
         task, final = with_chosen_set(task, tested.state, choice, single, progress)
         tested, steps = significant_effects(task, final)
     return _result(task, tested, steps, choice, progress, rng)
+
+
+def _searched(
+    task: DiagnosisTask, single: Sequence[Effect], progress: Progress
+) -> tuple[DiagnosisTask, SearchState]:
+    """The search's result with a prior that suits the machine beside what was found.
+
+    A missing effect passes for noise, beside which errors of the machine a sixteenth of what is
+    expected may be likeliest. Once the effect is there, they are drawn to zero, and what is left of
+    them looks like further effects. So the search is made again with the prior that suits beside
+    the clearest effect, or the clearest two and so on, where that is wider.
+    """
+    found, final = search_with_memory(task, single, progress)
+    for _ in range(MAX_SUITED):
+        clearest = final.search.verify(final.chosen)
+        clearest.sort(key=lambda member: member.evidence, reverse=True)
+        sets = ([v.member.sized for v in clearest[: k + 1]] for k in range(len(clearest)))
+        priors = (found.suited(effects).prior for effects in sets)
+        wider = next((p for p in priors if np.any(p.factor > found.prior.factor)), None)
+        if wider is None:
+            break
+        task = replace(task, prior=task.prior.at_least(wider))
+        found, final = search_with_memory(task, single, progress)
+    # errors of the lines of joints bend like effects that are missing
+    return found.suited(final.effects) if task.model.chain.joints else found, final
 
 
 def _offered(

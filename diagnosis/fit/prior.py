@@ -56,6 +56,11 @@ class Prior:
         """The same belief, held with less confidence."""
         return Prior(self.mean, factor * self.root, self.narrowed)
 
+    def at_least(self, other: "Prior") -> "Prior":
+        """The same belief in the class, narrowed no more than another one is."""
+        factor = np.maximum(self.factor, other.factor)
+        return Prior(self.mean, (factor / self.factor)[:, None] * self.root, factor)
+
     def joined(self, other: "Prior") -> "Prior":
         """Both sets of parameters, independent of one another."""
         root = block_diag(self.root, other.root)

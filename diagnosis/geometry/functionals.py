@@ -3,8 +3,10 @@
 - lines along every linear axis through the middle of what was probed, all rotary axes at zero, give
   the scale (slope along the axis) and the straightness (across it, about the straight line of
   least squares);
-- squareness, two by two, is that of the affine field that fits the displacements at the probed
-  positions best, all rotary axes at zero: a curved line has another slope in every part of it;
+- squareness, two by two, is that of the straight lines of two axes (ISO 230-1) by least squares
+  over the probed readings, each with the others in the middle of theirs: a curved line has another
+  slope in every part of it, and what one axis does is no slope of another that goes with it, as Z
+  goes with Y below a head that tilts;
 - the angular errors of a linear axis and all errors of a rotary one are curves of its reading, of
   which the peak-to-valley over the probed readings is reported;
 - the line of a rotary axis is where the tool sees it, place and tilt, while the axis turns;
@@ -14,7 +16,8 @@ None of them depends on where the standard stands, nor on how parameters share w
 common.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
+from functools import cached_property
 from itertools import combinations
 
 import numpy as np
@@ -37,14 +40,11 @@ from matstd.twin.sampling import spread_rows
 TRAVEL_POINTS = 21
 """Poses of a line along an axis: a sine over the travel has ten of them in every half wave."""
 
-MAX_POSITIONS = 400
-"""Probed positions at which an affine field is fitted: more do not move a slope by a per cent."""
+MAX_READINGS = 400
+"""Probed readings over which a line is fitted: more do not move a slope by a per cent."""
 
 MIN_SEEN_SHARE = 1e-3
 """Share of what a location error does that the others must not do, if it is seen beside them."""
-
-MIN_INDEPENDENT_SHARE = 0.1
-"""Least singular value of unit columns of readings from which axes moved independently."""
 
 
 def functionals(fit: Fit, theta: Array) -> Iterator[Functional]:
@@ -77,10 +77,8 @@ def _lines(fit: Fit) -> "dict[str, _Line]":
 
 
 def _squarenesses(lines: "Mapping[str, _Line]") -> Iterator[Functional]:
-    if len(lines) > 1:
-        slopes = _affine_slopes(next(iter(lines.values())).fit, sorted(lines))
-        for first, second in combinations(sorted(lines), 2):
-            yield from _squareness(lines[first], lines[second], slopes)
+    for first, second in combinations(sorted(lines), 2):
+        yield from _squareness(lines[first], lines[second])
 
 
 def _is_probed(fit: Fit, axis: str) -> bool:
@@ -161,6 +159,18 @@ class _Line:
         """Least-squares slope of the displacement in a direction, (P,), mm per mm."""
         return np.asarray(self.q @ np.einsum("nip,i->np", self.D, direction) / (self.q @ self.q))
 
+    @cached_property
+    def reference(self) -> Array:
+        """Slope of the reference straight line over the probed readings, (3, P), mm per mm."""
+        t, chain = self.fit.run.touches[self.fit.used], self.poses.chain
+        own = [chain.axis_index(axis) for axis in chain.linear_axes]
+        q = np.zeros((min(len(t), MAX_READINGS), len(chain.axes)))
+        q[:, own] = t.q[:, own].mean(axis=0)
+        q[:, chain.axis_index(self.axis)] = t.reading(self.axis)[spread_rows(len(t), len(q))]
+        along = q[:, chain.axis_index(self.axis)] - q[:, chain.axis_index(self.axis)].mean()
+        D = _displacements(self.fit, at_poses(chain, q, float(np.mean(t.length))))
+        return np.asarray(np.tensordot(along, D, axes=1) / (along @ along))
+
     def functionals(self, theta: Array) -> Iterator[Functional]:
         """Scale, straightness, angular errors."""
         letter = LETTERS[self.link.own]
@@ -206,29 +216,7 @@ def _longest_other(chain: Chain, axis: str) -> float:
     return max((float(high - low) for low, high in others), default=0.0)
 
 
-def _affine_slopes(fit: Fit, axes: Sequence[str]) -> Mapping[str, Array]:
-    """Slopes over every axis of the affine field that fits the probed positions best, (3, P).
-
-    ``d = c + sum_a g_a q_a`` by least squares over the readings of the linear axes at all touches,
-    as many as `MAX_POSITIONS`. Axes whose readings went together give none: their lines do.
-    """
-    t = fit.run.touches[fit.used]
-    chain = t.chain
-    rows = spread_rows(len(t), MAX_POSITIONS)
-    q = np.zeros((len(rows), len(chain.axes)))
-    for axis in axes:
-        q[:, chain.axis_index(axis)] = t.reading(axis)[rows]
-    at = np.column_stack([q[:, chain.axis_index(a)] for a in axes])
-    at = at - at.mean(axis=0)
-    size = np.linalg.norm(at, axis=0)
-    if np.linalg.svd(at / size, compute_uv=False)[-1] < MIN_INDEPENDENT_SHARE:
-        return {}
-    D = _displacements(fit, at_poses(chain, q, float(np.mean(t.length))))
-    slopes = np.tensordot(np.linalg.pinv(at / size) / size[:, None], D, axes=1)  # (A, 3, P)
-    return dict(zip(axes, slopes, strict=True))
-
-
-def _squareness(first: _Line, second: _Line, slopes: Mapping[str, Array]) -> Iterator[Functional]:
+def _squareness(first: _Line, second: _Line) -> Iterator[Functional]:
     """Deviation of two axes from a right angle, as the rotation of the second about the third.
 
     ``EC0Y = -(slope of X over y) - (slope of Y over x)``, and so on by cyclic exchange.
@@ -238,9 +226,7 @@ def _squareness(first: _Line, second: _Line, slopes: Mapping[str, Array]) -> Ite
     if abs(first.direction @ second.direction) > 0.5:  # parallel axes have no squareness
         return
     sign = float(np.cross(np.eye(3)[third], second.direction) @ first.direction)
-    weights = second.slope(first.direction) + first.slope(second.direction)
-    if slopes:
-        weights = first.direction @ slopes[second.axis] + second.direction @ slopes[first.axis]
+    weights = first.direction @ second.reference + second.direction @ first.reference
     yield Functional(
         quantity=Quantity.SQUARENESS,
         symbol=f"E{LETTERS[3 + third]}0{second.axis}",

@@ -28,16 +28,19 @@ def in_a_corner(seed: int) -> Touches:
     return replace(t, point=t.ball_artefact - 3.0 * t.normal)
 
 
-def affine_squareness(model: Model, theta: np.ndarray, t: Touches) -> float:
-    """EC0Y of the affine field through the true displacements at the probed places, rad."""
-    at = t.q[:, [t.chain.axis_index(a) for a in "XYZ"]]
-    moved = model.tip_deviation(at_poses(t.chain, t.q, float(t.length.mean())), theta)
-    slopes = np.linalg.lstsq(np.column_stack([np.ones(len(t)), at]), moved, rcond=None)[0]
-    return float(-(slopes[2, 0] + slopes[1, 1]))
+def squareness_of_lines(model: Model, theta: np.ndarray, t: Touches) -> float:
+    """EC0Y of the true straight lines of X and Y over the probed readings, rad (ISO 230-1)."""
+    slopes = []
+    for axis, across in (("X", 1), ("Y", 0)):
+        own, q = t.chain.axis_index(axis), np.tile(t.q.mean(axis=0), (len(t), 1))
+        q[:, own] = t.q[:, own]
+        moved = model.tip_deviation(at_poses(t.chain, q, float(t.length.mean())), theta)
+        slopes.append(np.polyfit(t.q[:, own], moved[:, across], 1)[0])
+    return float(-sum(slopes))
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_squareness_is_that_of_the_affine_field_where_it_was_probed(seed: int) -> None:
+def test_squareness_is_that_of_the_straight_lines_where_it_was_probed(seed: int) -> None:
     """Straightness of third to fifth degree is in no part of the model: lines are 50 µrad off."""
     rng = np.random.default_rng(seed)
     t = in_a_corner(seed)
@@ -48,8 +51,41 @@ def test_squareness_is_that_of_the_affine_field_where_it_was_probed(seed: int) -
     run = Run(t, true.deviation(t, theta) + rng.normal(0.0, 2 * U, len(t)), np.full(len(t), 2 * U))
     rows = {r.symbol: r for r in learnt_geometry(fit_run(run, model)).rows}
     found = rows["EC0Y"].estimate
-    assert abs(found.value - affine_squareness(true, theta, t)) < 3.0 * found.u
+    assert abs(found.value - squareness_of_lines(true, theta, t)) < 3.0 * found.u
     assert found.u < 10.0 * URAD
+
+
+@dataclass(frozen=True)
+class Bow(Declared):
+    """A guideway of Y that bends along X."""
+
+    kind, acts_on = "bow", "EXY"
+    parameters = (Parameter("amplitude", "mm", 10 * UM),)
+
+    def amounts(self, touches: Touches) -> tuple[np.ndarray]:
+        return (over_travel(touches, "Y") ** 2,)
+
+
+def over_travel(t: Touches, axis: str) -> np.ndarray:
+    """Readings from -1 to 1 over the travel of an axis."""
+    low, high = t.chain.link(axis).range
+    return (2.0 * t.reading(axis) - low - high) / (high - low)
+
+
+def test_straightness_is_no_squareness_of_an_axis_that_goes_with_it() -> None:
+    """Below a head that tilts, Z goes with the square of Y; a parabola of Y does not incline Z."""
+    rng = np.random.default_rng(3)
+    t = made_up("hmc1995", 300)
+    q, z = t.q.copy(), t.chain.axis_index("Z")
+    low, high = t.chain.link("Z").range
+    q[:, z] = high + (low - high) * (0.9 * over_travel(t, "Y") ** 2 + rng.uniform(0.0, 0.1, len(t)))
+    t = replace(t, q=q, point=replace(t, q=q).ball_artefact - 3.0 * t.normal)
+    moved = Model(t.chain, (Bow(),)).deviation(t, np.array([10.0 * UM]))
+    run = Run(t, moved + rng.normal(0.0, U, len(t)), np.full(len(t), U))
+    rows = {r.symbol: r.estimate for r in geometry_rows(fit_run(run, ordinary_model(t.chain)))}
+    assert rows["EXY"].value > 5.0 * UM
+    assert abs(rows["EB0Z"].value) < 3.0 * rows["EB0Z"].u
+    assert rows["EB0Z"].u < 3.0 * URAD
 
 
 @dataclass(frozen=True)
@@ -74,8 +110,8 @@ def test_a_function_of_the_reading_is_a_part_of_the_squareness(is_part: bool) ->
     theta = np.concatenate([rng.normal(0.0, 0.3 * ordinary.prior_sd), [9.0 * UM]])
     run = Run(t, model.deviation(t, theta) + rng.normal(0.0, U, len(t)), np.full(len(t), U))
     (row,) = (r for r in geometry_rows(fit_run(run, model)) if r.symbol == "EC0Y")
-    part = affine_squareness(Model(t.chain, (ramp,)), theta[-1:], t)
-    whole = affine_squareness(model, theta, t)
+    part = squareness_of_lines(Model(t.chain, (ramp,)), theta[-1:], t)
+    whole = squareness_of_lines(model, theta, t)
     assert abs(part) > 20.0 * URAD
     expected = whole if is_part else whole - part
     assert abs(row.estimate.value - expected) < 3.0 * row.estimate.u < 0.5 * abs(part)
@@ -86,7 +122,7 @@ def test_a_function_of_the_reading_is_a_part_of_the_squareness(is_part: bool) ->
 def test_what_the_choice_of_the_model_adds_is_part_of_the_uncertainty() -> None:
     """Without curves in the machine every model says the same; with one they differ.
 
-    By little: the affine field at the probed places hardly depends on what a model has in between.
+    By little: lines over the probed readings hardly depend on what a model has in between.
     """
     t = in_a_corner(1)
     model = ordinary_model(t.chain)
@@ -101,7 +137,7 @@ def test_what_the_choice_of_the_model_adds_is_part_of_the_uncertainty() -> None:
         assert row.estimate.value == plain.estimate.value
         assert row.estimate.u == pytest.approx(np.hypot(plain.estimate.u, row.u_model))
         added.append(row.u_model / plain.estimate.u)
-    assert added[0] < 0.02
+    assert added[0] < 0.05
     assert added[1] > 0.2
 
 

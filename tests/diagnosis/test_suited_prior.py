@@ -1,19 +1,25 @@
 """The factor on the prior that suits a machine, against another library and plain least squares."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 from scipy.stats import multivariate_t
 
+from matstd.diagnosis.answer import diagnose
 from matstd.diagnosis.fit import Prior, fit_run
 from matstd.diagnosis.fit.suited_prior import _evidence, _released
 from matstd.diagnosis.geometry import geometry_rows
 from matstd.diagnosis.regression import PRIOR_DOF
-from matstd.twin.library import ordinary_model
+from matstd.twin.files import read_machine
+from matstd.twin.library import ordinary_model, parse_effect, proposals
 from matstd.twin.machine import Axis, make_chain
+from matstd.twin.model import Model
 from matstd.twin.record import Run, Setup, Touches
-from matstd.twin.units import UM, URAD
+from matstd.twin.units import DEG, UM, URAD
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
 
 NOISE = 3.0 * UM
 SCALE, SQUARE = -18e-6, 41.0 * URAD
@@ -129,3 +135,70 @@ def test_one_error_that_is_not_as_small_as_the_rest_keeps_what_is_expected_of_it
     factor = {e.name: fit.prior.factor[i] for i, e in enumerate(model.effects)}
     assert factor["geometric(EYX,parabolic)"] == factor["geometric(EYX,sinusoidal)"] == 1.0
     assert factor["geometric(EXX,parabolic)"] == factor["geometric(EXY,parabolic)"] < 0.3
+
+
+def beside_a_turning_head(names: dict[str, float], seed: int = 0) -> Run:
+    """A good gantry with a head of two axes: its lines and scales, and errors by their names."""
+    rng, n = np.random.default_rng(seed), 400
+    chain = read_machine(EXAMPLES / "machines" / "gantry-machine.toml")
+    q, poses = np.zeros((n, len(chain.axes))), np.repeat(np.arange(40), n // 40)
+    for axis, (low, high) in {"X": (-300, 300), "Y": (-300, 300), "Z": (-300, -100)}.items():
+        q[:, chain.axis_index(axis)] = rng.uniform(low, high, n)
+    for axis, largest in {"A": 48 * DEG, "C": 180 * DEG}.items():
+        q[:, chain.axis_index(axis)] = rng.uniform(-largest, largest, 40)[poses]
+    normal = rng.normal((0.0, 0.0, 1.5), 1.0, (n, 3))
+    normal /= np.linalg.norm(normal, axis=1)[:, None]
+    t = Touches(
+        chain=chain,
+        q=q,
+        length=np.full(n, 240.0),
+        radius=np.full(n, 3.0),
+        point=np.zeros((n, 3)),
+        normal=normal,
+        setups=(Setup("a"),),
+        setup=np.zeros(n, dtype=np.int64),
+        time=9.0 * np.arange(n),
+        approach=np.zeros(q.shape),
+        pose=poses,
+    )
+    t = replace(t, point=t.ball_artefact - 3.0 * t.normal)
+    ordinary = ordinary_model(chain)
+    is_large = [e.name.endswith("linear)") or e.kind == "location" for e in ordinary.effects]
+    size = np.repeat(np.where(is_large, 0.3, 1 / 64), [len(e.parameters) for e in ordinary.effects])
+    theta = list(size * rng.normal(0.0, ordinary.prior_sd))
+    known = [e.name for e in ordinary.effects for _ in e.parameters]
+    added = [name for name in names if name not in known]
+    for name, amplitude in names.items():
+        if name in known:
+            theta[known.index(name)] = amplitude
+    effects = [parse_effect(name, chain) for name in added]
+    for name, effect in zip(added, effects, strict=True):
+        theta += [names[name], *(0.0 for _ in effect.parameters[1:])]
+    moved = Model(chain, (*ordinary.effects, *effects)).deviation(t, np.array(theta))
+    return Run(t, moved + rng.normal(0.0, 0.6 * UM, n), np.full(n, 0.6 * UM))
+
+
+def test_an_error_is_not_drawn_to_zero_beside_an_effect_that_was_found() -> None:
+    """While the wave of C is missing, an error of A a sixteenth of its class is likeliest."""
+    own = "geometric(EAA,sinusoidal)"
+    run = beside_a_turning_head({own: 12.0 * URAD, "periodic(ECC)": 60.0 * URAD}, seed=1)
+    names = ("periodic(ECC)", "geometric(EAA,2-4)", "gravity(EAA)", "backlash(X)")
+    candidates = [parse_effect(name, run.touches.chain) for name in names]
+    found = diagnose(run, candidates=candidates)
+    assert [e.name for e in found.found] == ["periodic(ECC)"]
+    fit = found.fit
+    (value,) = fit.theta[fit.of_effect(own)]
+    (u,) = np.sqrt(np.diag(fit.covariance)[fit.of_effect(own)])
+    assert abs(value - 12.0 * URAD) < 2.0 * u < 6.0 * URAD
+
+
+def test_growth_of_the_spindle_follows_a_head_that_turns() -> None:
+    """It grows along the tool, which no axis of the machine does (ISO 230-3)."""
+    run = beside_a_turning_head({"thermal-lag(EZC1)": -15.0 * UM})
+    found = diagnose(run)
+    assert [e.name for e in found.found] == ["thermal-lag(EZC1)"]
+    (size,) = (s.size for s in found.steps if s.effect is not None)
+    assert abs(size.value + 15.0) < 2.0 * size.u < 3.0
+    q = run.touches.q.copy()
+    q[:, run.touches.chain.axis_index("A")] = q[:, run.touches.chain.axis_index("C")] = 0.0
+    assert "thermal-lag(EZC1)" not in {e.name for e in proposals(replace(run.touches, q=q))}
