@@ -18,6 +18,7 @@ from matstd.probe_paths.plan.clearance import ToolClearance
 from matstd.probe_paths.plan.frame import ProgramFrame
 from matstd.probe_paths.plan.head import HeadTurns, head_turns
 from matstd.probe_paths.plan.order import Visit
+from matstd.twin.display import Displayed
 from matstd.twin.frames import Array, IntArray
 from matstd.twin.machine import Chain, table_to_tool
 from matstd.twin.record import Labels, Setup
@@ -143,8 +144,8 @@ class PlanTask:
         )
 
 
-@dataclass(frozen=True, eq=False)
-class TouchPlan(PlanTask):
+@dataclass(frozen=True, eq=False, repr=False)
+class TouchPlan(Displayed, PlanTask):
     """Touches in the order of execution; rows of one visit stand together."""
 
     # table poses in order, each with its side of approach and clearance height
