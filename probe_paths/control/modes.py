@@ -162,7 +162,7 @@ def _tool_call(block: Block, state: State) -> None:
     state.parameters[TOOL_LENGTH] = state.frame.probe.tool_length + is_other * state.off
     # the tool changer leaves the linear axes wherever its builder wanted
     state.q[state.frame.linear] = np.nan
-    state.is_retracted = state.is_at_turning_place = False
+    state.is_retracted = False
 
 
 def _orientation(block: Block, state: State) -> None:

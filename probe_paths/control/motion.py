@@ -39,7 +39,7 @@ def straight_line(state: State, block: Block) -> Move:
     if rotary:
         _turn(state, block, target, letters, rotary)
     elif "M91" in functions and letters == ["X", "Y"] and state.frame.chain.tool_rotary_axes:
-        _go_to_turning_place(state, block, target)
+        _go_to_turning_place(state, block)
     elif "M91" in functions:
         _retract(state, block, target, letters)
     else:
@@ -93,10 +93,6 @@ def _turn(state: State, block: Block, target: Array, letters: list[str], rotary:
         raise state.refusal(block, f"a retract ({state.terms.retract}) before it")
     if state.plane is not None:
         raise state.refusal(block, f"{state.terms.plane} before it")
-    heads = [a for a in rotary if a in state.frame.chain.tool_rotary_axes]
-    if heads and not state.is_at_turning_place:
-        expected = f"X and Y with {state.terms.machine} at the retract before it"
-        raise state.refusal(block, expected, f"{block.text!r}: {' and '.join(heads)} swings a tool")
     state.stale |= {Q.POSE, Q.SIDE_1, Q.SIDE_2}
     state.turns, state.turn_tested = state.turns + 1, set()
     for letter in rotary:
@@ -110,17 +106,12 @@ def _turn(state: State, block: Block, target: Array, letters: list[str], rotary:
             state.side[column] = np.sign(step)
 
 
-def _go_to_turning_place(state: State, block: Block, target: Array) -> None:
-    """Rules for X and Y with M91: at the retract, and every time to the same place."""
+def _go_to_turning_place(state: State, block: Block) -> None:
+    """Rules for X and Y with M91, to where a head turns: at the retract."""
     if not state.is_tcpm_off:
         raise state.refusal(block, f"{state.terms.reset} before {state.terms.machine}")
     if not state.is_retracted:
         raise state.refusal(block, f"a retract ({state.terms.retract}) before it")
-    place = target[[state.frame.chain.axis_index(a) for a in "XY"]]
-    if state.turning_place is not None and np.any(place != state.turning_place):
-        x, y = state.turning_place
-        raise state.refusal(block, f"X{x:+.4f} Y{y:+.4f}, where the head turned before")
-    state.turning_place, state.is_at_turning_place = place, True
 
 
 def _retract(state: State, block: Block, target: Array, letters: list[str]) -> None:
@@ -152,7 +143,6 @@ def _check_height(
     if not np.isfinite(before):
         raise state.refusal(block, f"a retract ({state.terms.retract}) first")
     if state.is_retracted:
-        state.is_at_turning_place = False
         if "Z" not in letters:
             return
         if letters != ["Z"] or not np.all(np.isfinite(target[state.frame.linear])):

@@ -52,8 +52,6 @@ class State:
     preset: int | None = None
     tool: int | None = None
     is_retracted: bool = False  # Z stands where M91 or M140 put it
-    turning_place: Array | None = None  # readings of X and Y at which a head turns, (2,), mm
-    is_at_turning_place: bool = False  # X and Y have not moved from it
     clearance: float | None = None  # reading of Z that the first move down from the retract went to
     untested: int | None = None  # touch whose status has not been tested
     way_back: Array | None = None  # readings that the next move must return to after a touch

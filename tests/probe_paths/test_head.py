@@ -270,8 +270,8 @@ def test_programs_beside_them_turn_at_the_same_place(plan):
 @pytest.mark.parametrize(
     ("old", "new", "expected"),
     [
-        (r"\d+ L X\+1500\.0000 Y\+1000\.0000 R0 FMAX M91\r\n", "", "X and Y with M91 at"),
-        (r"(?s)(.*L X\+1500\.0)(?=000 Y\+1000\.0000 R0 FMAX M91)", r"\g<1>1", "turned before"),
+        (r"\d+ L X\+1500\.0000 Y\+1000\.0000 R0 FMAX M91\r\n", "", "X and Y commanded before"),
+        (r"(?s)(.*L X\+1500\.0)(?=000 Y\+1000\.0000 R0 FMAX M91)", r"\g<1>1", "the one place"),
         (r"(?m)^\d+ L Z-1\.0000 R0 FMAX M91\r\n(?=\d+ L X)", "", "a retract"),
     ],
 )  # fmt: skip
@@ -281,7 +281,16 @@ def test_a_turn_elsewhere_is_refused(plan, old, new, expected):
     assert text != made.programs[0].text
     lines = [re.sub(r"^\d+ ", "", line) for line in text.split("\r\n")]
     with pytest.raises(BadFile, match=expected):
-        as_read(made, plan.chain, text="\r\n".join(lines))
+        check_moves(as_read(made, plan.chain, text="\r\n".join(lines)), plan.standard, plan.chain)
+
+
+def test_logs_of_programs_that_turned_elsewhere_are_still_evaluated(plan):
+    """Their text is read to compare a log with it; it is not run again."""
+    made = make_programs(plan)
+    older = re.sub(r"(?m)^\d+ L X\S+ Y\S+ R0 FMAX M91\r\n", "", made.programs[0].text)
+    lines = [re.sub(r"^\d+ ", "", line) for line in older.split("\r\n")]
+    read = as_read(made, plan.chain, text="\r\n".join(lines))
+    assert [touch.number for touch in read.touches] == [*range(1, len(plan) + 1)]
 
 
 def test_tables_turn_wherever_x_and_y_stand(golden, programs):
