@@ -11,6 +11,7 @@ from matstd.twin.machine import Chain, table_to_tool
 
 _SAME_AXIS_COSINE = 0.7  # cosine above which two directions count as one axis: half a right angle
 _UPRIGHT = ("[0, 90, 0]", "[-90, 0, 0]", "[0, 0, 0]")  # takes z to x, y, z of the table
+_X = 0  # place of X among the letters
 _TURNED = {0: (1, 2, 0), 1: (2, 0, 1), 2: (0, 1, 2)}  # coordinate axes that become x, y, z
 
 
@@ -58,14 +59,17 @@ def standing_remarks(chain: Chain, T_table_artefact: Array, down: str = "") -> t
     if axis is None:
         return ()
     sign, letter = "-" if face.min() < -0.5 else "+", "XYZ"[int(np.argmax(np.abs(face)))]
-    table = _innermost(chain)
-    if abs(float(axis @ face)) <= _SAME_AXIS_COSINE:
-        upright = _UPRIGHT[int(np.argmax(np.abs(axis)))]
+    table, along = _innermost(chain), int(np.argmax(np.abs(axis)))
+    # X is horizontal on every machine (ISO 841): what turns about it tilts its table
+    if abs(float(axis @ face)) <= _SAME_AXIS_COSINE and along != _X:
         return (
-            f"The standard stands on a face that looks along {sign}{letter} of the table frame, as "
-            f"on an angle plate, and {table} turns about another direction. The table of {table} "
-            f"itself is kept clear only where it stands under [[workshop.bodies]]; rotation_deg = "
-            f"{upright} of the set-up stands the standard on it.",
+            f"The standard stands on a face that looks along {sign}{letter} of the table frame, "
+            f"and {table} turns about {'XYZ'[along]}. Where {table} tilts a table, that table is "
+            f"[workshop.table], and this is right. Where the table of {table} looks along "
+            f"{'XYZ'[along]} and the standard stands on an angle plate on it, [workshop.table] is "
+            f"the face of the plate, and the table of {table} is kept clear only as one of the "
+            f"[[workshop.bodies]]; rotation_deg = {_UPRIGHT[along]} of the set-up stands the "
+            "standard on it.",
         )
     if not down or letter in down:
         return ()

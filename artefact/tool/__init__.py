@@ -4,6 +4,7 @@ In: a probe, a standard in its set-up, a workshop. Out: the probe as a body, and
 design looks at them before it begins, the planner for every visit of a table pose.
 """
 
+from matstd.artefact.tool.heights import NOSE_HEIGHT as NOSE_HEIGHT
 from matstd.artefact.tool.heights import OVERSHOOT as OVERSHOOT
 from matstd.artefact.tool.heights import Probe as Probe
 from matstd.artefact.tool.heights import home_readings as home_readings

@@ -62,18 +62,18 @@ class Probe:
         return ProbeShape(self.radius, (*self.stack, nose))
 
     def outline(self, sides: int = 16) -> Array:
-        """Points round the front rims of all but the stylus from the ball centre, tool frame.
+        """Points round the front rims of all but the stylus and the rear one, tool frame.
 
-        Together with the ball they bound the tool from below in any direction that a tilting head
-        may give it: the rims are polygons from outside.
+        From the ball centre. Together with the ball they bound the tool from below in any direction
+        that a tilting head may give it, also upwards: the rims are polygons from outside.
 
         Returns:
             Shape (M, 3), mm.
         """
         angle = np.arange(sides) * (2.0 * np.pi / sides)
         ring = np.stack([np.cos(angle), np.sin(angle), np.zeros(sides)], axis=-1)
-        lows = [end for end, _ in self.stack]
-        radii = [*(r for _, r in self.stack[1:]), self.nose_radius]
+        lows = [*(end for end, _ in self.stack), self.length + NOSE_HEIGHT]
+        radii = [*(r for _, r in self.stack[1:]), self.nose_radius, self.nose_radius]
         return np.concatenate(
             [
                 radius / np.cos(np.pi / sides) * ring + [0.0, 0.0, low]

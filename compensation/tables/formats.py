@@ -34,6 +34,7 @@ from matstd.compensation.tables.by_name import (
     unheld_by_name,
 )
 from matstd.compensation.tables.header import Header
+from matstd.twin.display import Displayed
 from matstd.twin.errors import DesignError
 from matstd.twin.files import write_whole
 from matstd.twin.frames import Array
@@ -105,8 +106,8 @@ class Format:
     read: Callable[[Path, Chain], tuple[Tables, Header]]  # tables and head from a folder
 
 
-@dataclass(frozen=True, eq=False)
-class VerifiedTables:
+@dataclass(frozen=True, eq=False, repr=False)
+class VerifiedTables(Displayed):
     """Tables that were written, read back and simulated on the exact twin."""
 
     format: str  # word of the format

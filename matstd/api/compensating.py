@@ -71,8 +71,13 @@ class TableResults(Displayed):
 
 
 @text.register
+def _of_control(played: VerifiedTables) -> str:
+    return next(table_lines(played))
+
+
+@text.register
 def _text(found: TableResults) -> str:
-    lines = [next(table_lines(played)) for played in found.done]
+    lines = [text(played) for played in found.done]
     return "\n".join([*lines, *(f"not written: {refusal}" for refusal in found.refused)])
 
 
@@ -254,6 +259,14 @@ class Compensation(Displayed):
 def beside_program(output: Path) -> list[Path]:
     """What is written beside a compensated program: its points, its picture, its figures."""
     return [output.with_suffix(ending) for ending in (".csv", ".png", ".json")]
+
+
+@text.register
+def _compensation(found: Compensation) -> str:
+    return (
+        f"compensation of {found.errors.chain.name} with {found.title}, tool of "
+        f"{found.datum.length:g} mm, judged at {len(found.poses)} poses"
+    )
 
 
 def compensate(

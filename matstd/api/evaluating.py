@@ -60,7 +60,16 @@ class Evaluation(Displayed):
         return self.measured
 
     def save(self, path: str | Path, machine: str | Path) -> None:
-        """Write the run file, which names the machine file, whole or not at all."""
+        """Write the run file, which names the machine file, whole or not at all.
+
+        Args:
+            path: Run file.
+            machine: Machine file as it is seen from the current folder; the run file has it as seen
+                from its own.
+
+        Raises:
+            BadFile: There is no such machine file.
+        """
         save_run(path, self.run, machine)
 
 

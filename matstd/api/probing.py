@@ -36,6 +36,7 @@ from matstd.twin.library import parse_sized_effect, parse_sizes
 from matstd.twin.machine import Chain
 from matstd.twin.record import Run, StatedBody, with_body
 from matstd.twin.units import MINUTE, UM
+from matstd.twin.words import not_read
 
 T_NORMAL = 20.0  # what the control reads of a sensor that no record has, degC
 
@@ -147,11 +148,13 @@ class Simulation(Displayed):
 
         Args:
             path: Run file.
-            machine: Machine file that the run file names.
+            machine: Machine file that the run file names, as it is seen from the current folder;
+                the run file has it as seen from its own.
             logs: Folder; None for none.
             force: Replace logs of an earlier run.
 
         Raises:
+            BadFile: There is no such machine file.
             DesignError: A log of the same name exists; the logs are kept in a free folder beside.
         """
         save_run(path, self.run, machine)
@@ -292,7 +295,17 @@ def stated_body(standard: Standard, temperature: float | None, u: float | None) 
 
 
 def save_run(path: str | Path, run: Run, machine: str | Path) -> None:
-    """Write a run file that names its machine file as it is seen from there."""
+    """Write a run file that names its machine file as it is seen from there.
+
+    Args:
+        machine: Path of the machine file from the current folder, absolute or relative.
+
+    Raises:
+        BadFile: There is no such machine file.
+    """
+    if not Path(machine).is_file():
+        found = not_read(Path(machine), FileNotFoundError())
+        raise BadFile(machine, "machine", found, "the machine file, from the current folder")
     write_run(path, run, seen_from(Path(path).parent, machine))
 
 

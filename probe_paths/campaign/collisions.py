@@ -18,7 +18,8 @@ def check_moves(program: ReadProgram, standard: Standard, chain: Chain) -> None:
     Machine and set-up are nominal; probe and workshop are those stated in the head. Low moves of
     the linear axes are swept with ball and tool, and so is every touch: to its contact, beyond it
     if the surface is missed, and the retract. The ball must meet the stated feature first. Rotary
-    moves are checked at all intermediate positions.
+    moves are checked at all intermediate positions, and a head that carries the tool turns at one
+    place.
 
     Raises:
         BadFile: Line of the first move that comes too close, and the obstacle.
@@ -31,6 +32,7 @@ def check_moves(program: ReadProgram, standard: Standard, chain: Chain) -> None:
         chain=chain, standard=standard, setup=setup, probe=probe, workshop=workshop
     )
     solid = solid_hull(standard, setup, workshop)
+    _check_turning_place(program, chain)
     line, before, after = _moves(program)
     rotary = chain.rotary_columns
     z = chain.axis_index("Z")
@@ -53,6 +55,40 @@ def check_moves(program: ReadProgram, standard: Standard, chain: Chain) -> None:
     gap, nearest = clearance.swept_gap(before[low], after[low])
     _refuse(program, line[low], gap, nearest)
     _check_touches(program, clearance)
+
+
+def _check_turning_place(program: ReadProgram, chain: Chain) -> None:
+    """Refuse a program whose head turns anywhere but at one commanded place; raises BadFile.
+
+    A program of an earlier version turns its head elsewhere: its logs are evaluated, but it is not
+    run again.
+    """
+    xy = [chain.axis_index(a) for a in "XY"]
+    head = [chain.axis_index(a) for a in chain.tool_rotary_axes]
+    before = place = np.full(len(chain.axes), np.nan)
+    for step in program.steps:
+        if not isinstance(step, Move | ProbeStep):
+            continue
+        # a head that stands at an unknown reading turns too
+        is_same = np.array_equal(step.q[head], before[head], equal_nan=True)
+        if isinstance(step, Move) and not is_same:
+            place = step.q if np.isnan(place[xy]).any() else place
+            if not np.array_equal(step.q[xy], place[xy]):
+                names = " and ".join(chain.tool_rotary_axes)
+                found = f"{names} turning at {_stated_place(step.q[xy])}"
+                expected = f"{_stated_place(place[xy])}, the one place of its turns"
+                if np.isnan(step.q[xy]).any():
+                    expected = "X and Y commanded before, and one place for all turns"
+                expected += ": emit the programs again"
+                raise BadFile(program.path, step.line, found, expected)
+        before = step.q
+
+
+def _stated_place(xy: Array) -> str:
+    """X and Y as words; unknown where they have not been commanded."""
+    if np.isnan(xy).any():
+        return "unknown X and Y"
+    return " ".join(f"{a}{v:+.4f}" for a, v in zip("XY", xy, strict=True))
 
 
 def _moves(program: ReadProgram) -> tuple[IntArray, Array, Array]:

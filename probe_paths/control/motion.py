@@ -38,6 +38,8 @@ def straight_line(state: State, block: Block) -> Move:
     rotary = [a for a in letters if a not in LINEAR]
     if rotary:
         _turn(state, block, target, letters, rotary)
+    elif "M91" in functions and letters == ["X", "Y"] and state.frame.chain.tool_rotary_axes:
+        _go_to_turning_place(state, block)
     elif "M91" in functions:
         _retract(state, block, target, letters)
     else:
@@ -104,12 +106,21 @@ def _turn(state: State, block: Block, target: Array, letters: list[str], rotary:
             state.side[column] = np.sign(step)
 
 
+def _go_to_turning_place(state: State, block: Block) -> None:
+    """Rules for X and Y with M91, to where a head turns: at the retract."""
+    if not state.is_tcpm_off:
+        raise state.refusal(block, f"{state.terms.reset} before {state.terms.machine}")
+    if not state.is_retracted:
+        raise state.refusal(block, f"a retract ({state.terms.retract}) before it")
+
+
 def _retract(state: State, block: Block, target: Array, letters: list[str]) -> None:
-    """Rules for a block with M91: Z alone, up, to the top of its travel."""
+    """Rules for Z with M91: alone, up, to the top of its travel."""
     if not state.is_tcpm_off:
         raise state.refusal(block, f"{state.terms.reset} before {state.terms.machine}")
     if letters != ["Z"]:
-        raise state.refusal(block, f"Z alone with {state.terms.machine}")
+        machine = state.terms.machine
+        raise state.refusal(block, f"Z alone with {machine}, or X and Y where a head turns")
     column = state.frame.chain.axis_index("Z")
     top = state.frame.chain.link("Z").range[1]
     if target[column] < top - TOP_OF_TRAVEL:

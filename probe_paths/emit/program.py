@@ -15,6 +15,7 @@ from matstd.probe_paths.emit.first import FirstWriter
 from matstd.probe_paths.emit.writer import Feeds, Purpose, Writer
 from matstd.probe_paths.language import LANGUAGES, Dialect, checked_name, head_mask, shared_masks
 from matstd.probe_paths.plan import TouchPlan
+from matstd.twin.display import Displayed
 from matstd.twin.errors import DesignError
 from matstd.twin.files import write_whole
 from matstd.twin.frames import IntArray
@@ -27,8 +28,8 @@ SEARCH_FEED = 800.0
 """Feed of a search, mm/min: its touches are 100 mm long; the place is needed to 0.3 mm only."""
 
 
-@dataclass(frozen=True)
-class Program:
+@dataclass(frozen=True, repr=False)
+class Program(Displayed):
     """One program file."""
 
     name: str
@@ -36,7 +37,7 @@ class Program:
     text: str
     touches: int
     duration: float  # by the clock, s
-    read: ReadProgram = field(repr=False, compare=False)  # what the interpreter understood of it
+    read: ReadProgram = field(compare=False)  # what the interpreter understood of it
 
     @property
     def blocks(self) -> int:
@@ -49,8 +50,8 @@ class Program:
         return f"{self.name}{self.ending}"
 
 
-@dataclass(frozen=True)
-class ProgramSet:
+@dataclass(frozen=True, repr=False)
+class ProgramSet(Displayed):
     """Programs of one plan."""
 
     programs: tuple[Program, ...]

@@ -103,6 +103,8 @@ class Writer:
             sensors=() if is_first else dialect.sensors,
         )
         self.retract = self.language.retract(plan.top)
+        # the tool change leaves a head anywhere: the first turn is one to watch
+        self.first_feed = self.feeds.turning if plan.chain.tool_rotary_axes else None
 
     def text(self, name: str, title: str, part: list[int], duration: float) -> str:
         """Whole text of a program that makes the visits `part`."""
@@ -141,6 +143,19 @@ class Writer:
             ),
             *(k.comment(text) for text in (*self.purpose.remarks, *self._tool_remarks())),
             *([k.comment("ROTARY AXES MUST BE FREE TO TURN WITH Z RETRACTED")] * bool(self.rotary)),
+            *(k.comment(text) for text in self._head_remarks()),
+        ]
+
+    def _head_remarks(self) -> list[str]:
+        """Where a head turns and what its tool sweeps there, in machine coordinates."""
+        turns = self.plan.head_turns
+        if turns is None:
+            return []
+        (x, y, z), (to_x, to_y, _) = np.floor(turns.planned[0]), np.ceil(turns.planned[1])
+        at = " ".join(f"{a}{v:+.0f}" for a, v in zip("XY", turns.place, strict=False))
+        return [
+            f"THE HEAD TURNS ONLY AT {at} OF THE MACHINE, Z RETRACTED",
+            f"ITS TOOL SWEEPS X{x:+.0f} TO{to_x:+.0f} Y{y:+.0f} TO{to_y:+.0f} FROM Z{z:+.0f}",
         ]
 
     def _tool_remarks(self) -> list[str]:
@@ -168,7 +183,7 @@ class Writer:
         start = [k.comment(f"START AT VISIT 1 TO {visits}:"), k.assign(Q.START, 1)]
         at_rest = self._all_tested(test for test in self.tests if test.is_at_rest)
         reset = [k.structure("RESET"), *k.reset(self.plan.chain, dialect), *at_rest, self.retract]
-        return [*start, *reset, *self._called(), *self._home()]
+        return [*start, *reset, *self._called(), *self._home(self.first_feed)]
 
     def _called(self) -> list[str]:
         """Call of the probe, in the orientation of its calibration where the dialect has one."""
@@ -176,10 +191,20 @@ class Writer:
         oriented = k.orientation if dialect.is_oriented else ()
         return [k.tool_call(dialect.tool), *oriented, k.preset(dialect.preset), self.retract]
 
-    def _home(self) -> list[str]:
-        """Rotary axes to the position where programs begin and end, unwinding them."""
+    def _home(self, feed: float | None = None) -> list[str]:
+        """Rotary axes to the position where programs begin and end, unwinding them.
+
+        Args:
+            feed: degrees/min; None is rapid.
+        """
         k, home = self.language, home_readings(self.plan.chain)
-        return [*k.unwind, k.line(self._words(home), None)] if self.rotary else []
+        turned = [*k.unwind, *self._turning_place(), k.line(self._words(home), feed)]
+        return turned if self.rotary else []
+
+    def _turning_place(self) -> list[str]:
+        """Where a head turns; a table may turn wherever X and Y stand."""
+        turns = self.plan.head_turns
+        return [] if turns is None else [self.language.to_turning_place(*turns.place[:2].tolist())]
 
     def _words(self, rotary: Array) -> dict[str, float]:
         """Words of rotary readings (R,), in the order in which the control shows its axes."""
@@ -254,6 +279,7 @@ class Writer:
         """Retract, turn past the position, and approach it from the stated side."""
         k, out = self.language, [self.retract, *self._end_plane()]
         if self.rotary:
+            out += self._turning_place()
             out += [k.turn(self._words(place)) for place in waypoints(here, visit.before)]
             out.append(k.line(self._words(visit.rotary), self.feeds.turning))
             out += self._turn_checks(visit.rotary) if k.tests_turns else []

@@ -181,6 +181,10 @@ class Language:
         """Z to a reading of the machine, where rotary axes may turn."""
         return self._form("retract", axes=axis_words({"Z": z}))
 
+    def to_turning_place(self, x: float, y: float) -> str:
+        """X and Y to readings of the machine, where a head that carries the tool may turn."""
+        return self._form("retract", axes=axis_words({"X": x, "Y": y}))
+
     def retract_max(self, z: float) -> str:
         """The same after a touch without contact: to the end of the travel."""
         return self._form("retract_max", axes=axis_words({"Z": z}))

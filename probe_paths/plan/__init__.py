@@ -13,6 +13,7 @@ from matstd.probe_paths.plan.clearance import ToolClearance as ToolClearance
 from matstd.probe_paths.plan.clearance import stroke_gaps as stroke_gaps
 from matstd.probe_paths.plan.frame import LINEAR as LINEAR
 from matstd.probe_paths.plan.frame import ProgramFrame as ProgramFrame
+from matstd.probe_paths.plan.head import HeadTurns as HeadTurns
 from matstd.probe_paths.plan.heading import Heading as Heading
 from matstd.probe_paths.plan.heading import Sensor as Sensor
 from matstd.probe_paths.plan.heading import calibration_hash as calibration_hash

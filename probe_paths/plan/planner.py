@@ -128,8 +128,12 @@ def _with_heights(task: PlanTask, stops: list[Visit]) -> list[Visit]:
     tops = top_height(chain, rotary, solid, probe) + options.clearance
     heights = np.array([task.frame.whole(top) for top in tops])
     home = home_readings(chain)
-    allowed, path = task.top - 0.5 * options.clearance, rotary_path(home, stops, home)
-    swing = swing_height(chain, path, solid, probe, allowed).max(initial=-np.inf)
+    allowed, ways = task.top - 0.5 * options.clearance, [rotary_path(home, stops, home)]
+    if chain.tool_rotary_axes:  # each may be the first or the last visit of a file
+        ways += [rotary_path(home, [stop], home) for stop in stops]
+    swing = max(
+        swing_height(chain, path, solid, probe, allowed).max(initial=-np.inf) for path in ways
+    )
     highest = max(heights.max(), swing + 0.5 * options.clearance)
     if highest > task.top:
         raise NotReachable(

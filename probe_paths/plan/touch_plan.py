@@ -16,7 +16,9 @@ from matstd.artefact.reach import DatumBall, ProbeReach, Requests, Workshop
 from matstd.artefact.tool import OVERSHOOT, Probe, readings_at
 from matstd.probe_paths.plan.clearance import ToolClearance
 from matstd.probe_paths.plan.frame import ProgramFrame
+from matstd.probe_paths.plan.head import HeadTurns, head_turns
 from matstd.probe_paths.plan.order import Visit
+from matstd.twin.display import Displayed
 from matstd.twin.frames import Array, IntArray
 from matstd.twin.machine import Chain, table_to_tool
 from matstd.twin.record import Labels, Setup
@@ -142,8 +144,8 @@ class PlanTask:
         )
 
 
-@dataclass(frozen=True, eq=False)
-class TouchPlan(PlanTask):
+@dataclass(frozen=True, eq=False, repr=False)
+class TouchPlan(Displayed, PlanTask):
     """Touches in the order of execution; rows of one visit stand together."""
 
     # table poses in order, each with its side of approach and clearance height
@@ -160,6 +162,16 @@ class TouchPlan(PlanTask):
 
     def __len__(self) -> int:
         return len(self.visit)
+
+    @cached_property
+    def head_turns(self) -> HeadTurns | None:
+        """Where a head turns and what it sweeps; None where no rotary axis carries the tool.
+
+        All programs of a probe in a set-up have the same place.
+        """
+        rotary = np.array([r for visit in self.visits for r in (visit.before, visit.rotary)])
+        place = self.setup.T_table_artefact
+        return head_turns(self.chain, self.probe, place, self.top, rotary)
 
     @property
     def distance(self) -> float:

@@ -7,11 +7,12 @@ from matstd.artefact.brief import Brief
 from matstd.probe_paths.emit import SEARCH, Feeds, ProgramSet, make_programs
 from matstd.probe_paths.language import Dialect, checked_name, read_dialect
 from matstd.probe_paths.plan import PlanOptions, Sensor, TouchPlan
+from matstd.twin.display import Displayed
 from matstd.twin.errors import BadFile
 
 
-@dataclass(frozen=True, eq=False)
-class Station:
+@dataclass(frozen=True, eq=False, repr=False)
+class Station(Displayed):
     """What one probe does in one clamping."""
 
     plan: TouchPlan

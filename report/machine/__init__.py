@@ -6,6 +6,7 @@ readings, and the page multiplies the exact kinematics itself (`live/parts/kinem
 """
 
 from matstd.report.machine.error_series import error_functions as error_functions
+from matstd.report.machine.head_section import head_sections as head_sections
 from matstd.report.machine.machine_page import machine_data as machine_data
 from matstd.report.machine.machine_page import machine_html as machine_html
 from matstd.report.machine.machine_words import ShownMachine as ShownMachine

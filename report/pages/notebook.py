@@ -22,12 +22,15 @@ from matstd.diagnosis.files import SavedModel
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.laws import Learning
 from matstd.diagnosis.residual import rank_variables
+from matstd.probe_paths.emit import Program, ProgramSet
+from matstd.probe_paths.plan import TouchPlan
+from matstd.probe_paths.stations import Station
 from matstd.report.geometry import change_sentences
 from matstd.report.identifiability import gist
 from matstd.report.laws import law_sentence, no_law_sentence
 from matstd.report.layout import picture
 from matstd.report.maps import draw_regions
-from matstd.report.numbers import microns, sentence
+from matstd.report.numbers import microns, plural, sentence
 from matstd.report.pages.design_result import Design
 from matstd.report.pages.uncertainty_page import Budgets
 from matstd.report.plots import draw_fall, draw_over_variables
@@ -41,6 +44,7 @@ from matstd.twin.machine import Chain
 from matstd.twin.model import Model
 from matstd.twin.numbers import rms
 from matstd.twin.record import Run
+from matstd.twin.units import MINUTE
 
 _ROWS = 10  # of a table that are shown; of the others their number
 
@@ -128,6 +132,31 @@ def _design(design: Design) -> str:
         f"{len(design.placement.touches)} touches, "
         f"{len(programs)} programs{where}"
     )
+
+
+@text.register
+def _plan(plan: TouchPlan) -> str:
+    poses = len({visit.pose for visit in plan.visits})
+    return (
+        f"set-up {plan.setup.name}: {plural(len(plan), 'touch')} in "
+        f"{plural(len(plan.visits), 'visit')} of {plural(poses, 'pose')}"
+    )
+
+
+@text.register
+def _program(program: Program) -> str:
+    minutes = f"about {program.duration / MINUTE:.0f} min"
+    return f"{program.file}: {plural(program.touches, 'touch')}, {minutes}"
+
+
+@text.register
+def _programs(programs: ProgramSet) -> str:
+    return "\n".join(map(text, programs.programs))
+
+
+@text.register
+def _station(station: Station) -> str:
+    return f"{station.plan!r}, with tool {station.dialect.tool}\n{station.programs!r}"
 
 
 @singledispatch

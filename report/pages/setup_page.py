@@ -14,7 +14,7 @@ from matstd.probe_paths.locate import Companions
 from matstd.probe_paths.plan import SMALLEST_GAP, Heading, TouchPlan, calibration_hash
 from matstd.probe_paths.stations import Station
 from matstd.report.layout import Page, Picture, Section, Table, write_page
-from matstd.report.machine import PLAYBACK, write_playback
+from matstd.report.machine import PLAYBACK, head_sections, write_playback
 from matstd.report.numbers import plural
 from matstd.report.plots import draw_setup
 from matstd.twin.frames import fixed_xyz_angles
@@ -133,6 +133,7 @@ def write_setup_page(
             Section(pictures=[Picture(picture, drawing, draw_setup(plan))]),
             *([_campaign(stations, number)] if many else []),
             *_mount(plan),
+            *head_sections(plan),
             *_probe(station),
             *_run(station, others, playback, conditions),
             _alarms(plan, station),

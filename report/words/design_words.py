@@ -25,6 +25,8 @@ COVERED, NEARLY_ALL, FAR = 0.5, 0.9, 3.0
 """Share of the workspace of an axis below which the touches do not cover it: half, or nearly all
 where the workspace is known so many times worse than the probed volume."""
 
+_ALONG_SPINDLE = 0.7  # cosine above which an axis turns about the spindle: half a right angle
+
 AT_20 = "This holds for a standard at 20 °C, or corrected with its known temperature."
 """Condition of every figure of a design: 1 K of steel is 3 µm over 300 mm."""
 
@@ -77,7 +79,7 @@ def _extrapolated(placement: Placement, workspace: Mapping[str, tuple[float, flo
     """Axes whose workspace the touches do not cover; empty for none."""
     if not workspace:
         return ""
-    reach, parts = placement.criterion.reach, []
+    reach, parts, heads = placement.criterion.reach, [], []
     q, own = reach.readings(placement.requests), placement.own
     least = NEARLY_ALL if own.rms_user > FAR * own.rms else COVERED
     for name, (low, high) in workspace.items():
@@ -86,13 +88,18 @@ def _extrapolated(placement: Placement, workspace: Mapping[str, tuple[float, flo
         if last - first < least * (high - low):
             unit, sign = (1.0, " mm") if link.kind == "linear" else (DEG, "°")
             ends = [f"{round(v / unit) + 0.0:.0f}" for v in (read.min(), read.max(), low, high)]
+            # an axis of a head along the spindle tilts nothing
+            is_tilting = abs(float(link.direction[2])) < _ALONG_SPINDLE
+            heads += [name] * (is_tilting and name in reach.chain.tool_rotary_axes)
             parts.append(f"{name} {ends[0]} to {ends[1]}{sign} (workspace {ends[2]} to {ends[3]})")
     if not parts:
         return ""
+    ways = ["a smaller workspace", "further set-ups"]
+    if heads:  # over a low standard the end of Z limits the tilt in every set-up
+        ways.append(f"for {listed(heads)} a riser under the standard")
     return (
         f"The touches cover only {listed(parts)}. Beyond these readings the model extrapolates "
-        "with the assumed shapes of the errors; a smaller workspace or further set-ups reduce the "
-        "uncertainty."
+        f"with the assumed shapes of the errors; {listed(ways, 'or')} reduce the uncertainty."
     )
 
 

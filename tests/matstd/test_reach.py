@@ -150,14 +150,18 @@ def test_a_standard_in_the_table_or_under_it_is_refused(
 def test_a_face_that_is_no_table_is_said() -> None:
     """The table of B looks up; a standard that looks at the spindle stands on something else."""
     said = {}
-    for name in ("horizontal", "upright", "trunnion", "vertical"):
+    for name in ("horizontal", "upright", "trunnion", "vertical", "four-axis"):
         project = read_project(MACHINES / f"{name}.toml")
         place = project.setup.T_table_artefact
         said[name] = standing_remarks(project.chain, place, project.down)
         if name == "upright":  # its table lies level under a level spindle: weight along -Y
             (remark,) = standing_remarks(project.chain, place, "-Z")
             assert 'Where it lies level, standard.down = "-Y"' in remark
-    assert "looks along +Z of the table frame" in said.pop("horizontal")[0]
+    (remark,) = said.pop("horizontal")
+    assert "looks along +Z of the table frame, and B turns about Y" in remark
+    assert "Where B tilts a table, that table is [workshop.table], and this is right" in remark
+    assert "rotation_deg = [-90, 0, 0] of the set-up" in remark
+    # A about X, as on a four-axis mill, tilts the table that stands under [workshop.table]
     assert set(said.values()) == {()}
 
 

@@ -111,8 +111,19 @@ def test_a_run_of_a_scan_can_be_written_and_read(body, scan, tmp_path):
     )
     found.save(tmp_path / "run.csv", tmp_path / "machine.toml")
     again = read_run(tmp_path / "run.csv")
+    assert '# machine = "machine.toml"' in (tmp_path / "run.csv").read_text(encoding="utf-8")
     assert len(again) == len(found.run)
     np.testing.assert_allclose(again.deviation, found.run.deviation, atol=2e-6)
+
+
+def test_a_run_of_a_machine_file_that_is_missing_is_not_written(body, scan, tmp_path):
+    """The path is that from the current folder, not from the run file's."""
+    line, ball, *_ = scan
+    q = readings(ball)[:, [CHAIN.axis_index(n) for n in "XYZ"]]
+    found = evaluated(written(tmp_path / "s.csv", line, q), body)
+    with pytest.raises(BadFile, match=r"machine: found no such file.*from the current folder"):
+        found.save(tmp_path / "run.csv", tmp_path / "there" / "machine.toml")
+    assert not (tmp_path / "run.csv").exists()
 
 
 def test_the_three_kinds_of_logs_say_the_same(body, scan, tmp_path):

@@ -9,7 +9,7 @@ from matstd.artefact.place import Family, FamilyFigures
 from matstd.report.words import best_rival, design_lines, shown_line, verdict_of_design
 from matstd.report.words.design_words import AT_20, blind_spots, proof_sentence
 from matstd.report.words.family_words import family_line
-from matstd.twin.machine import Chain
+from matstd.twin.machine import Axis, Chain, make_chain
 from matstd.twin.units import UM
 
 
@@ -165,6 +165,14 @@ def test_a_workspace_beyond_the_touches_is_reported_by_axis(chain: Chain) -> Non
         "The touches cover only X -100 to 90 mm (workspace -400 to 400) and "
         "B 0 to 10° (workspace -90 to 0). Beyond these readings the model extrapolates" in words
     )
+    assert "errors; a smaller workspace or further set-ups reduce the uncertainty." in words
+    # a tilting head over a standard that is too low; its C, along the spindle, needs no riser
+    axes = {"X": Axis((-400.0, 400.0))} | {a: Axis((-2.0, 2.0), (0.0, 0.0, 200.0)) for a in "CB"}
+    head = make_chain("head", "[w f X C B t]", axes)
+    made.criterion.reach = SimpleNamespace(chain=head, readings=lambda _requests: np.zeros((2, 3)))
+    words = verdict_of_design(made, {"B": (-1.0, 1.0), "C": (-1.0, 1.0)})
+    assert "further set-ups or for B a riser under the standard reduce the uncertainty" in words
+    made.criterion.reach = SimpleNamespace(chain=chain, readings=lambda _requests: read)
     most = {"X": (-120.0, 120.0)}
     assert verdict_of_design(made, most) == verdict_of_design(made, {})
     made.own.rms = made.own.rms_user / 10.0  # far worse known than what was probed

@@ -9,7 +9,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from matstd import compensate, machine_file
 from matstd.diagnosis.answer import compare, diagnose
+from matstd.probe_paths.language import Dialect
+from matstd.probe_paths.stations import Station
 from matstd.report.pages import drawing
 from matstd.report.words import comparison_sentence, verdict_sentence
 from matstd.sensitivity.first_order import Workspace
@@ -119,3 +122,23 @@ def test_without_pandas_the_table_is_still_to_be_had(comparison, monkeypatch):
     with pytest.raises(MissingLibrary, match=r"to_csv\(\)"):
         comparison.to_dataframe()
     assert comparison.to_csv().startswith("line,feature,")
+
+
+def test_plans_programs_and_stations_print_in_a_few_lines(golden):
+    plan, programs = golden.plan(), golden.programs()
+    assert repr(plan) == "set-up a: 58 touches in 10 visits of 5 poses"
+    assert repr(programs.programs[0]).startswith("MS_A_1.H: 24 touches, about ")
+    assert repr(programs).count("\n") == len(programs.programs) - 1
+    station = Station(plan, Dialect(), programs)
+    assert repr(station).startswith(f"{plan!r}, with tool 30\nMS_A_1.H: 24 touches")
+
+
+def test_a_compensation_and_its_tables_print_in_a_line_each(tmp_path):
+    files = machine_file("hmc1995"), machine_file("hmc1995", errors=True)
+    found = compensate(*files, tool_length=100.0)
+    of = "compensation of hmc1995 with hmc1995.toml"
+    assert repr(found) == f"{of}, tool of 100 mm, judged at 256 poses"
+    made = found.tables(tmp_path / "tables", ["iso230"])
+    assert repr(made.done[0]) == repr(made)
+    assert repr(made).startswith("ISO 230 names")
+    assert "\n" not in repr(made)
