@@ -60,6 +60,17 @@ def turn(T: Array, vectors: Array) -> Array:
     return np.einsum("...ij,...j->...i", T[..., :3, :3], vectors)
 
 
+def rotation_vector(R: Array) -> Array:
+    """Axis times angle of a rotation matrix (3, 3), rad; inverse of `rotation`."""
+    skew = 0.5 * np.array([R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]])
+    angle = np.arctan2(np.linalg.norm(skew), 0.5 * (np.trace(R) - 1.0))
+    if angle < np.pi - 1e-3:
+        return np.asarray(skew / np.sinc(angle / np.pi))
+    # half a turn has no skew part: its axis is the eigenvector of the eigenvalue one
+    axis = np.linalg.svd(R - np.eye(3))[2][-1]
+    return np.asarray(angle * axis * (-1.0 if axis @ skew < 0.0 else 1.0))
+
+
 def unit(vectors: Array) -> Array:
     """Vectors (..., 3) scaled to length one."""
     return np.asarray(vectors / np.linalg.norm(vectors, axis=-1, keepdims=True))

@@ -90,7 +90,7 @@ class ResidualSpace:
             residual=residual,
             dof=max(solution.dof - len(u) + count, 1.0),
             groups=fit.groups,
-            gross=fit.gross.rows,
+            gross=fit.gross.accidents,
             whitener=fit.whitener,
             stated=PRIOR_DOF / (fit.noise.factor * fit.weight) ** 2,
             independent=count if fit.weight > 1.0 else None,

@@ -9,6 +9,7 @@ from matstd.diagnosis.fit.inner import Tangent, tangents
 from matstd.diagnosis.fit.prior import Prior
 from matstd.diagnosis.fit.suited_prior import narrowed, widened_by, widening
 from matstd.diagnosis.regression import (
+    Features,
     GrossErrors,
     LeftOut,
     Memory,
@@ -314,7 +315,8 @@ def fit_run(
         filter_ = whitener(memory, run.touches, run.u, kept)
         A[kept], y[kept] = filter_.filtered(A[kept]), filter_.filtered(y[kept])
     free = Prior.of_effects((*setups, *moved))
-    factor, widened, weight, shot = 1.0, 1.0, row_weight(memory), shots(run.touches)
+    factor, widened, weight = 1.0, 1.0, row_weight(memory)
+    groups = shots(run.touches), Features.of(run.touches)
     if beside is not None:
         factor, widened = beside.noise.factor, beside.widened
     for remaining in reversed(range(MAX_PASSES if beside is None else 1)):
@@ -322,7 +324,7 @@ def fit_run(
         belief = Prior(machine.mean, root, machine.narrowed).joined(free)
         whole = factor * weight
         X, rest = A @ belief.root / whole, (y - A @ belief.mean) / whole
-        solution, found = _solved(X, rest, train, gross, shot)
+        solution, found = _solved(X, rest, train, gross, groups)
         chi2 = float(solution.residual @ solution.residual) * whole**2
         better = noise_factor(chi2, solution.dof)
         if abs(better / factor - 1.0) < SETTLED_CHANGE or not remaining:
@@ -388,10 +390,10 @@ def noise_of(run: Run, solution: Solution, z: Array, used: Mask, factor: float) 
 
 
 def _solved(
-    X: Array, y: Array, train: Mask, gross: GrossErrors | None, shot: IntArray
+    X: Array, y: Array, train: Mask, gross: GrossErrors | None, groups: tuple[IntArray, Features]
 ) -> tuple[Solution, GrossErrors]:
     """Fit with gross errors looked for, or kept as they were found before."""
     if gross is None:
-        return find_gross(X, y, train, shot)
+        return find_gross(X, y, train, *groups)
     used = train & ~gross.rows
     return solve(X[used], y[used]), gross

@@ -249,10 +249,10 @@ def _have_carrier(gross: GrossErrors, rows: Mask, field: Field) -> bool:
 
 
 def _alike(gross: GrossErrors) -> Mask:
-    """Gross errors of common size, which a law may explain, (N,)."""
-    size = np.abs(gross.score)
-    middle = np.median(size[gross.rows]) if gross.rows.any() else 0.0
-    return np.asarray(gross.rows & (size < FAR_GROSS * middle))
+    """Gross errors of common size that a law may explain, (N,): none of a feature that is off."""
+    size, rows = np.abs(gross.score), gross.accidents
+    middle = np.median(size[rows]) if rows.any() else 0.0
+    return np.asarray(rows & (size < FAR_GROSS * middle))
 
 
 def _of_its_run(one: LearntLaw, seen: Touches, policy: LawPolicy) -> LearntLaw:

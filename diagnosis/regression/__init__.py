@@ -7,9 +7,10 @@ independent. Nothing here knows a machine.
 
 from matstd.diagnosis.regression.f_test import f_probability as f_probability
 from matstd.diagnosis.regression.f_test import f_tail as f_tail
+from matstd.diagnosis.regression.features import Features as Features
+from matstd.diagnosis.regression.features import robust_scale as robust_scale
 from matstd.diagnosis.regression.gross import GrossErrors as GrossErrors
 from matstd.diagnosis.regression.gross import find_gross as find_gross
-from matstd.diagnosis.regression.gross import robust_scale as robust_scale
 from matstd.diagnosis.regression.gross import shots as shots
 from matstd.diagnosis.regression.linear import LeftOut as LeftOut
 from matstd.diagnosis.regression.linear import Solution as Solution

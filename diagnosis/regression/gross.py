@@ -7,6 +7,13 @@ from scipy.linalg import solve_triangular
 from scipy.special import gammainc, ndtri
 
 from matstd.diagnosis.policy import POLICY
+from matstd.diagnosis.regression.features import (
+    Features,
+    Offsets,
+    robust_scale,
+    together,
+    whole_features,
+)
 from matstd.diagnosis.regression.linear import Solution, solve
 from matstd.twin.frames import Array, IntArray, Mask
 from matstd.twin.record import Touches
@@ -37,16 +44,18 @@ class GrossErrors:
     # whether more stood out than accidents can explain, so that none was taken out
     too_many: bool = False
     standing: Mask | None = None  # those that stood out then, (N,); None where none did
+    # those of them that are off together with others of their feature, (N,); None where none are
+    together: Mask | None = None
+
+    @property
+    def accidents(self) -> Mask:
+        """Gross errors that each have a cause of their own, (N,)."""
+        return self.rows if self.together is None else self.rows & ~self.together
 
     @property
     def are_many(self) -> bool:
-        """Whether more than usual were taken out, so that both errors are reported."""
-        return float(self.rows.sum()) > POLICY.accident_share * len(self.rows)
-
-
-def robust_scale(values: Array) -> float:
-    """Standard deviation by the median of the absolute values; immune to a tenth of outliers."""
-    return float(1.4826 * np.median(np.abs(values))) if len(values) else 0.0
+        """Whether more accidents than usual were taken out, so that both errors are reported."""
+        return float(self.accidents.sum()) > POLICY.accident_share * len(self.rows)
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,7 +111,11 @@ def shots(touches: Touches) -> IntArray:
 
 
 def find_gross(
-    X: Array, y: Array, allowed: Mask, shot: IntArray | None = None
+    X: Array,
+    y: Array,
+    allowed: Mask,
+    shot: IntArray | None = None,
+    features: Features | None = None,
 ) -> tuple[Solution, GrossErrors]:
     """Fit and gross errors together: take out what stands out, take back what fits after all.
 
@@ -110,51 +123,80 @@ def find_gross(
     touches; the leverage is in the variance of that prediction. The scale is a median, so that
     neither chips nor an unknown effect hides a chip. The limit holds for the largest of N normal
     scores (Bonferroni). With one coordinate of a shot the others go: a target that was seen at
-    another moment is wrong in all, and those that are less so would pass for an effect.
+    another moment is wrong in all, and those that are less so would pass for an effect. Features
+    that are off as a whole are out from the start.
 
     Args:
         X: Whitened columns, (N, P).
         y: Whitened observations, (N,).
         allowed: Rows that may be used at all (not those held out), (N,).
         shot: Shot of every row, as from `shots`, (N,); None where each is one of its own.
+        features: What every row is of; None where none is known.
 
     Returns:
         The fit to the used rows, in their order, and the gross errors of all rows.
     """
     shot = np.arange(len(y)) if shot is None else np.unique(shot, return_inverse=True)[1]
+    features = features or Features(np.full(len(y), -1), np.zeros((len(y), 3)))
     n = int(allowed.sum())
     limit = float(-ndtri(0.5 * POLICY.false_alarm / max(n, 1)))
-    used = allowed.copy()
-    every = solve(X[used], y[used])
+    every = solve(X[allowed], y[allowed])
     if every.dof < MIN_DOF:
         zero, nothing = np.zeros(len(y)), np.zeros(len(y), dtype=bool)
         return every, GrossErrors(rows=nothing, size=zero, score=zero, limit=limit)
     whole = _Whole.of(X, y, every, allowed)
+    off = whole_features(whole.rest, every, allowed, features)
+    used, error, score = _settled(whole, allowed, limit, shot, off)
+    kept = off.still(allowed & ~used, features)
+    if kept.rows.sum() < off.rows.sum():
+        off = kept
+        used, error, score = _settled(whole, allowed, limit, shot, off)
+    out = allowed & ~used
+    common = (out & off.rows) | together(out, allowed, error, features)
+    alone, others = out & ~common, allowed & ~common
+    is_few = alone.sum() <= POLICY.accident_share * n
+    is_right = is_few or _are_accidents(alone, others, score / limit, shot)
+    # too many, or with a common cause: then all touches stay in the fit
+    rows = out if is_right else common
+    fit = solve(X[allowed & ~rows], y[allowed & ~rows]) if rows.any() else every
+    return fit, GrossErrors(
+        rows=rows,
+        size=error,
+        score=score,
+        limit=limit,
+        too_many=not is_right,
+        standing=None if is_right else alone,
+        together=common if common.any() else None,
+    )
+
+
+def _settled(
+    whole: _Whole, allowed: Mask, limit: float, shot: IntArray, off: Offsets
+) -> tuple[Mask, Array, Array]:
+    """Rows in use once none goes out and none comes back, prediction errors and scores, (N,) each.
+
+    Args:
+        limit: Score above which a touch is a gross error.
+        off: Features that are out from the start; their touches that are right come back.
+    """
+    n, used = int(allowed.sum()), allowed & ~off.rows
     for _ in range(MAX_GROSS_ROUNDS):
         error, variance = whole.left_out_each(used, np.flatnonzero(allowed & ~used))
         z = error / np.sqrt(variance)
-        scale = robust_scale(z[allowed])
+        scale = robust_scale(z[allowed & ~off.rows])
         score = z / scale if scale > 0.0 else np.zeros_like(z)
         inside = np.abs(score[used])
         # gross errors bend the fit, so only the farthest go out in one round
         bar = max(limit, MIN_SCORE_SHARE * float(inside.max(initial=0.0)))
-        far = np.abs(score) > np.where(used, bar, limit)
-        wanted = allowed & ~_alone(far, shot)
+        far = ~off.rows & (np.abs(score) > np.where(used, bar, limit))
+        aside = off.rows & (np.abs(error) > off.half)
+        wanted = allowed & ~_alone(far, shot) & ~aside
         if (wanted == used).all():
             break
         used = wanted
-        if n - int(wanted.sum()) > POLICY.gross_share * n:
+        if n - int((wanted | off.rows).sum()) > POLICY.gross_share * n:
             break
-    out = allowed & ~used
-    if out.sum() <= POLICY.accident_share * n or _are_accidents(out, allowed, score / limit, shot):
-        fit = solve(X[used], y[used]) if out.any() else every
-        return fit, GrossErrors(rows=out, size=error, score=score, limit=limit)
-    # too many, or with a common cause: then all touches stay in the fit
-    nothing = np.zeros(len(y), dtype=bool)
-    kept = GrossErrors(
-        rows=nothing, size=error, score=score, limit=limit, too_many=True, standing=out
-    )
-    return every, kept
+    return used, error, score
 
 
 def _are_accidents(out: Mask, allowed: Mask, score: Array, shot: IntArray) -> bool:

@@ -6,6 +6,8 @@ Something new to notice is a member of `What`, and a line in `run_remarks` that 
 
 from matstd.diagnosis.remarks.body_size import BodySize as BodySize
 from matstd.diagnosis.remarks.body_size import body_sizes as body_sizes
+from matstd.diagnosis.remarks.offsets import OffTogether as OffTogether
+from matstd.diagnosis.remarks.offsets import off_together as off_together
 from matstd.diagnosis.remarks.order import JumpInOrder as JumpInOrder
 from matstd.diagnosis.remarks.remark_kinds import Noticed as Noticed
 from matstd.diagnosis.remarks.remark_kinds import What as What

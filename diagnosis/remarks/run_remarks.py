@@ -8,6 +8,7 @@ import numpy as np
 from matstd.diagnosis.fit import MIN_POSES, Fit, UnitMistake, fit_run, unit_mistake
 from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.remarks.body_size import BodySize, body_sizes
+from matstd.diagnosis.remarks.offsets import OffTogether, off_together
 from matstd.diagnosis.remarks.order import JumpInOrder, jump_in_order
 from matstd.diagnosis.remarks.remark_kinds import Noticed, What, noticed, short_beam
 from matstd.twin.elastic import short_beams
@@ -96,7 +97,9 @@ def targets_a_turn(q: Array) -> int:
     return n if n > MIN_TARGETS and np.abs(off).max() < MAX_UNEVENNESS else 0
 
 
-Remark = Noticed | UnitMistake | BodySize | HarmonicsAlike | JumpInOrder | EffectOfOtherRun
+Remark = (
+    Noticed | UnitMistake | BodySize | HarmonicsAlike | JumpInOrder | EffectOfOtherRun | OffTogether
+)
 
 
 def remarks(fit: Fit, start: Fit | None = None) -> tuple[Remark, ...]:
@@ -117,7 +120,7 @@ def remarks(fit: Fit, start: Fit | None = None) -> tuple[Remark, ...]:
     out += harmonics_alike(fit)
     out += _elastic(fit)
     out += _fixing(fit)
-    out += ([] if units else _noise(fit)) + _outliers(fit)
+    out += ([] if units else _noise(fit)) + off_together(fit) + _outliers(fit)
     if fit.widened > 1.0:
         out.append(noticed(What.PRIOR_WIDENED, factor=fit.widened))
     return tuple(out)
@@ -213,7 +216,7 @@ def _outliers(fit: Fit) -> list[Remark]:
     both = _both_ways(fit)
     if gross.too_many:
         return [noticed(What.OUTLIERS_KEPT), *both]
-    rows = np.flatnonzero(gross.rows)
+    rows = np.flatnonzero(gross.accidents)
     if len(rows) == 0:
         return []
     rows = rows[np.argsort(-np.abs(gross.score[rows]))]
@@ -227,10 +230,11 @@ def _outliers(fit: Fit) -> list[Remark]:
 def _both_ways(fit: Fit) -> list[Remark]:
     """The error without the touches that stand out, and with them, where they are many."""
     gross = fit.gross
-    out = gross.standing if gross.too_many else gross.rows
+    out = gross.standing if gross.too_many else gross.accidents
     if out is None or not (gross.too_many or gross.are_many):
         return []
-    other = replace(gross, rows=out & gross.too_many, too_many=False)
+    rows = (out | gross.rows) if gross.too_many else gross.rows & ~gross.accidents
+    other = replace(gross, rows=rows, too_many=False)
     beside = fit_run(fit.run, fit.model, gross=other, memory=fit.memory)
     without, whole = (beside, fit) if gross.too_many else (fit, beside)
     sizes = {"touches": int(out.sum()), "of": len(out), "left_out": not gross.too_many}

@@ -28,6 +28,17 @@ _DISPLACED = 50.0 * UM
 """Displacement of a feature that means it was moved or calibrated wrongly, mm: no machine model
 leaves residuals of this size at all touches of one feature alone."""
 
+_RADIUS_SD = 0.1  # standard deviation of a radius that may be stated wrongly, mm
+
+_WRONG_RADIUS = 10.0 * UM
+"""Error of the stated radius from which contacts allow for it, mm. The set-up moves by about as
+much, and a foot point on a ball of 6 mm by the square of that over 12 mm: 0.8 um for 0.1 mm, which
+the radius found would be wrong by, and 0.01 um here."""
+
+_LEFT_BY_RADIUS = 0.5
+"""Most that a wrong radius leaves of the sum of squares: a chip on one of few touches asks for one,
+too, and takes a small part of it away."""
+
 _SIGNIFICANT = 4.0  # least ratio of such a displacement to its standard error
 _ROUNDS = 4  # with errors of ordinary size and a standard 1 mm beside its place three were enough
 _CONVERGED = 1e-5  # change of deviations in a round below which the iteration has converged, mm
@@ -142,11 +153,24 @@ def _displacement(run: Run, weight: Array) -> tuple[Array, Array, Array]:
     model = Model(t.chain, (*ordinary_model(t.chain).effects, *setup_errors(t)))
     sd = np.array([p.sd for effect in model.effects for p in effect.parameters])
     root = np.sqrt(weight) / np.maximum(run.u, _NOISE)
-    columns = model.columns(t)
-    A = np.concatenate([columns * sd * root[:, None], np.eye(len(sd))])
-    y = np.concatenate([run.deviation * root, np.zeros(len(sd))])
-    theta = sd * np.linalg.lstsq(A, y, rcond=None)[0]
+    # last a radius of the ball that is stated wrongly, which the set-up would imitate
+    columns, sd = np.column_stack([model.columns(t), np.ones(len(t))]), np.append(sd, _RADIUS_SD)
+    theta, with_radius = _fitted(columns, sd, root, run.deviation)
+    usual, without = _fitted(columns[:, :-1], sd[:-1], root, run.deviation)
+    if abs(theta[-1]) < _WRONG_RADIUS or with_radius > _LEFT_BY_RADIUS * without:
+        theta = np.append(usual, 0.0)
     residual = run.deviation - columns @ theta
     left = np.abs(residual)
-    usual = _HUBER * max(float(np.median(left)), _NOISE)
-    return model.relative_deviation(t, theta), residual, usual / np.maximum(left, usual)
+    most = _HUBER * max(float(np.median(left)), _NOISE)
+    return model.relative_deviation(t, theta[:-1]), residual, most / np.maximum(left, most)
+
+
+def _fitted(columns: Array, sd: Array, root: Array, deviation: Array) -> tuple[Array, float]:
+    """Parameters (P,) by weighted least squares with their prior, and what is left of its sum.
+
+    Undetermined ones are zero.
+    """
+    A = np.concatenate([columns * sd * root[:, None], np.eye(len(sd))])
+    y = np.concatenate([deviation * root, np.zeros(len(sd))])
+    phi = np.linalg.lstsq(A, y, rcond=None)[0]
+    return np.asarray(sd * phi), float(np.sum((y - A @ phi) ** 2))

@@ -1,6 +1,6 @@
 """From logs to measurements: calibrated foot points, deviations, and where the standard stands."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -13,6 +13,7 @@ from matstd.probe_paths.campaign.log_parts import (
     logged_temperatures,
     without_rows,
 )
+from matstd.probe_paths.campaign.log_slips import log_slip
 from matstd.probe_paths.control import UNDATED, LogPart
 from matstd.probe_paths.language import Dialect
 from matstd.probe_paths.plan import LINEAR, Probe, ProgramFrame
@@ -75,11 +76,15 @@ def evaluate(
     _check_calibrations(parts)
     dialect = dialect or Dialect()
     touches = _touches_on(parts, standard, chain, dialect, is_fitted=False)
-    good, far = _split_by_gap(parts, computed_deviation(touches), LARGEST_GAPS[0])
+
+    def gaps(changed: Sequence[LogPart]) -> Array:
+        return computed_deviation(_touches_on(changed, standard, chain, dialect, is_fitted=False))
+
+    good, far = _split_by_gap(parts, computed_deviation(touches), LARGEST_GAPS[0], gaps)
     while True:
         parts, remarks = without_rows(parts, good), [*remarks, *far]
         touches = _touches_on(parts, standard, chain, dialect, is_fitted=True)
-        good, far = _split_by_gap(parts, computed_deviation(touches), LARGEST_GAPS[1])
+        good, far = _split_by_gap(parts, computed_deviation(touches), LARGEST_GAPS[1], gaps)
         if not far:
             break
     u_touch = touch_uncertainty(standard, touches, u)
@@ -270,9 +275,15 @@ def fitted_setup(
 
 
 def _split_by_gap(
-    parts: Sequence[LogPart], gap: Array, limit: float
+    parts: Sequence[LogPart],
+    gap: Array,
+    limit: float,
+    gaps: Callable[[Sequence[LogPart]], Array],
 ) -> tuple[np.ndarray, list[str]]:
     """Mask of touches near their stated surface, (N,), and remarks on the others.
+
+    Args:
+        gaps: Of other parts at their believed set-up, as of `log_slip`.
 
     Raises:
         BadFile: More distant touches than occasional mistakes explain.
@@ -285,9 +296,11 @@ def _split_by_gap(
         found = f"{gap[row]:.3f} mm" if np.isfinite(gap[row]) else "no way"
         what = f"touch {part.number[i]} with {found} between ball and surface"
         if np.mean(~good) > LARGEST_OUTLIER_SHARE:
+            slip = log_slip(parts, gaps, LARGEST_GAPS[0])
+            cause = slip or "another feature, set-up, probe or meaning of Z"
             raise BadFile(
-                part.path, part.line[i], what,
-                f"less than {limit:g} mm: another feature, set-up, probe or meaning of Z",
+                part.path, part.line[i], f"{what}, one of {int(np.sum(~good))} such of {len(gap)}",
+                f"less than {limit:g} mm: {cause}",
             )  # fmt: skip
         remarks.append(f"{part.path}: line {part.line[i]}: {what}; it is left out")
     return good, remarks

@@ -255,6 +255,10 @@ def _size(learning: Learning, law: Law) -> str:
     if law.is_curve_alone:
         own = partial_residual(learning, law)[1]
         return f"{microns(float((own**2).mean() ** 0.5))} rms at the touches"
+    if len(found) == 1 and [f.shape.word for f in law.factors].count("saturation") == 1:
+        (a,) = found  # from -a to a: what lies between its ends is what a ramp is said with
+        whole = a._replace(value=2.0 * a.value, u=None if a.u is None else 2.0 * a.u)
+        return f"{amplitude_words(law, whole)} from end to end"
     if len(found) == 1 or any("slope" in a.name for a in found):  # no two of one unit to sum
         return ", ".join(amplitude_words(law, a) for a in found)
     total = math.sqrt(sum(a.value**2 for a in found))

@@ -3,6 +3,8 @@
 import math
 from collections.abc import Mapping, Sequence
 
+import numpy as np
+
 from matstd.diagnosis.answer import Comparison, Detectable, Step
 from matstd.diagnosis.fit import SINE_PREFIX, Fit, Reported, Role
 from matstd.diagnosis.residual import Condition, Region, Shape, Side, Structure, Wrong
@@ -20,9 +22,9 @@ from matstd.report.numbers import (
 )
 from matstd.report.words.remark_words import memory_words
 from matstd.twin.numbers import rms
-from matstd.twin.record import Run
+from matstd.twin.record import FAR_SHIFT, FAR_TURN, Moved, Run
 from matstd.twin.thermal import CYCLE, PROGRESS
-from matstd.twin.units import UM, URAD
+from matstd.twin.units import DEG, UM, URAD
 from matstd.twin.words import listed
 
 _WORDS = {
@@ -42,6 +44,11 @@ _PARTS = {
     **{f"shift-{c}": f"the place of the standard along {c} of the table" for c in "xyz"},
 }
 """Carriers of an error that are no component of an axis."""
+
+TURNS = {"a quarter turn": 90.0, "half a turn": 180.0}
+NEARLY_WHOLE = 2.0
+"""Turns of a standard that have names, degrees, and how near to them one is that is called so."""
+ALONG_AXIS = 0.99  # part of the direction of a rotation along an axis that is named for it
 
 MOST_NAMED_CARRIERS = 4  # carriers that are named beside the first
 ALL_NUMBERS = 7  # numbers of an effect that are written out; of more, only those that sum them up
@@ -224,8 +231,44 @@ def scanned_sentence(found: Sequence[Detectable]) -> str:
     return f"Searched: {listed(each)}; nothing is known outside these ranges." if each else ""
 
 
+def far_setups(run: Run) -> list[str]:
+    """Sentences on set-ups in which the standard was clamped otherwise than the file states."""
+    return [_far_setup(moved) for moved in run.moved if moved.is_far]
+
+
+def _far_setup(moved: Moved) -> str:
+    """`Set-up a stands a quarter turn about Z of the table (+89.99°) from where the file ...`."""
+    angle, said = moved.turn / DEG, []
+    if moved.turn > FAR_TURN:
+        axis = moved.turned / moved.turn
+        i = int(np.argmax(np.abs(axis)))
+        about = f"({', '.join(f'{a:.2f}' for a in axis)})"
+        if abs(axis[i]) > ALONG_AXIS:
+            about, angle = "XYZ"[i], float(np.copysign(angle, axis[i]))
+        by = f"{angle:+.2f}°"
+        name = next((w for w, whole in TURNS.items() if abs(abs(angle) - whole) < NEARLY_WHOLE), "")
+        turn = f"{name} about {about} of the table ({by})"
+        said.append(turn if name else f"turned by {by} about {about} of the table")
+    if float(np.linalg.norm(moved.origin)) > FAR_SHIFT:
+        parts = [f"{a} {round(x, 1) + 0.0:+.1f}" for a, x in zip("XYZ", moved.origin, strict=True)]
+        said.append(f"{', '.join(parts)} mm")
+    return (
+        f"Set-up {moved.name} stands {listed(said)} from where the file states it: check origin_mm "
+        "and rotation_deg of the set-up, and that the standard was clamped as planned; the place "
+        "that the touches show is used."
+    )
+
+
 def comparison_sentence(found: Comparison) -> str:
-    """Error of a model on a run, with its worst touch and the pattern of its residual."""
+    """Error of a model on a run, with its worst touch and the pattern of its residual.
+
+    First stand set-ups that are not where the file states them.
+    """
+    return " ".join([*far_setups(found.run), _compared(found)])
+
+
+def _compared(found: Comparison) -> str:
+    """The same of the model alone."""
     worst, left = found.worst, microns(found.rms)
     after = "after the prediction" if found.is_prediction else "after the fit"
     more = "" if found.rms <= found.rms_measured else ", more than before"

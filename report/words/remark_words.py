@@ -185,6 +185,22 @@ def _outliers_left_out(r: noticed.Noticed) -> str:
     )
 
 
+def off_sentence(r: noticed.OffTogether) -> str:
+    """A feature whose touches are off together, and what to do, without a full stop."""
+    side, size = "outside" if r.size > 0 else "inside", with_uncertainty(abs(r.size) / UM, r.u / UM)
+    of = f" in {r.run}" if r.run else ""
+    off = f"{len(r.lines)} of {plural(r.of, 'touch')} on {r.feature}{of} lie {size} µm {side}"
+    if r.is_whole:
+        return f"{off}: clean {r.feature}, or check its calibration"
+    at = ", ".join(f"{x:.0f}" for x in r.place)
+    return f"{off}, about ({at}) mm on the standard: look for dirt or a chip there"
+
+
+def _off_together(r: noticed.OffTogether) -> str:
+    lines = few([str(line) for line in r.lines], LISTED)
+    return f"{off_sentence(r)}; they are left out: lines {lines}"
+
+
 def _not_significant(r: noticed.Noticed) -> str:
     size = with_uncertainty(r.value, r.u, unit_words(r.unit))
     return (
@@ -274,6 +290,7 @@ _SENTENCES: dict[type | What, str | Callable[[Any], str]] = {
     "point: fixing_mm in [setup.NAME] of the run",
     What.SEARCH_ENDED: "the search was stopped after {r.sets:.0f} sets of effects: the reported "
     "effects passed every test, but another set may explain more",
+    noticed.OffTogether: _off_together,
     What.NOT_SIGNIFICANT: _not_significant,
     noticed.HarmonicsAlike: _harmonics_alike,
 }

@@ -7,10 +7,18 @@ from matstd.diagnosis.answer import Diagnosis, Step, Verdict, acts_as_instrument
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.laws import Learning
 from matstd.diagnosis.policy import POLICY
+from matstd.diagnosis.remarks import OffTogether
 from matstd.report.effects import DOUBTS, class_words, words_of_name
 from matstd.report.laws import held_out_sentence, instead_sentence, law_sentence, rival_sentence
 from matstd.report.numbers import digits, microns
-from matstd.report.words.diagnosis_words import noise_words, sizes, stated_noise, structure_clause
+from matstd.report.words.diagnosis_words import (
+    far_setups,
+    noise_words,
+    sizes,
+    stated_noise,
+    structure_clause,
+)
+from matstd.report.words.remark_words import off_sentence
 from matstd.twin.units import DEG
 from matstd.twin.words import few, listed
 
@@ -137,7 +145,18 @@ def _covered(diagnosis: Diagnosis) -> str:
 
 
 def verdict_sentence(diagnosis: Diagnosis) -> str:
-    """The verdict with numbers and standard uncertainties; a wrong description is in it."""
+    """The verdict with numbers and standard uncertainties; a wrong description is in it.
+
+    First stand set-ups that are not where the file states them, and features that are off as a
+    whole or in part: no part of the machine.
+    """
+    off = [off_sentence(r) for r in diagnosis.remarks if isinstance(r, OffTogether)]
+    first = [*far_setups(diagnosis.run), *(f"{words}." for words in off)]
+    return " ".join([*first, _of_machine(diagnosis)])
+
+
+def _of_machine(diagnosis: Diagnosis) -> str:
+    """The verdict on the machine and its description."""
     far = [row for row in diagnosis.parts.geometry.beyond if row.is_far]
     if not far:
         return _verdict_alone(diagnosis)

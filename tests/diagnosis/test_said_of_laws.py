@@ -11,7 +11,7 @@ from matstd import learn
 from matstd.api.learning import LearntLaws
 from matstd.api.saved import extended
 from matstd.diagnosis.fit import fit_run
-from matstd.diagnosis.laws import SecondRun, places
+from matstd.diagnosis.laws import POLICY, Learning, LearntLaw, SecondRun, places
 from matstd.diagnosis.laws.beginning import Beginning
 from matstd.diagnosis.laws.learn import _have_carrier
 from matstd.diagnosis.laws.library import LibraryEffect
@@ -19,11 +19,12 @@ from matstd.diagnosis.laws.screening import field_of
 from matstd.diagnosis.laws.search import _is_seen
 from matstd.report.laws import second_run_sentence
 from matstd.report.laws.law_page import law_sections
-from matstd.report.laws.law_words import library_sentence
+from matstd.report.laws.law_words import law_sentence, library_sentence
 from matstd.report.laws.looks import looks_like
 from matstd.twin.errors import BadArgument
 from matstd.twin.files import read_machine
 from matstd.twin.library import ordinary_model, parse_effect
+from matstd.twin.model import columns
 from matstd.twin.units import UM
 
 
@@ -146,3 +147,23 @@ def test_what_turns_with_the_contact_looks_like_the_form_of_the_standard() -> No
     lobes = parse_effect("law(shift,harmonic C,sine azimuth)", chain)
     assert "form of the standard" in looks_like(lobes)
     assert "cogging" in looks_like(parse_effect("law(EXX,harmonic C,sine X)", chain))
+
+
+@pytest.mark.parametrize("shape", ["saturation", "ramp"])
+def test_a_change_between_two_levels_is_said_from_end_to_end(case, shape) -> None:
+    """The Z slide stands 12 um higher after the middle of the run than before."""
+    run = case(11, "hsm600u").run
+    time = run.touches.time
+    middle, width = float(np.median(time)), 0.002 * float(np.ptp(time))
+    chain = run.touches.chain
+    law = parse_effect(f"law(EZZ,{shape} time)", chain)
+    places = (middle, width) if shape == "saturation" else (middle - width, middle + width)
+    law = law.tuned(*places)
+    late = columns([parse_effect("law(EZZ,step time)", chain).tuned(middle)], run.touches)
+    start = Beginning.of_run(replace(run, deviation=run.deviation + 12.0 * UM * late[:, 0]))
+    fits = start.fitted([law]), start.fitted([law], True)
+    one = LearntLaw(law, (), 0.0, 0.0, 0.0, 0.0, ())
+    said = law_sentence(Learning(start, *fits, (one,), None, None, (), POLICY), one)
+    number, u = (float(x) for x in said.split(" of ")[1].split(" µm")[0].split(" ± "))
+    assert abs(number - 12.0) < 4.0 * u < 4.0
+    assert ("µm from end to end over time" in said) == (shape == "saturation")

@@ -85,3 +85,18 @@ def test_a_chip_pulls_no_other_touch_along(probed, small, chain) -> None:
     others = np.arange(len(run)) != 11
     assert abs(chipped.deviation[11] - run.deviation[11]) > 100.0 * UM
     assert np.linalg.norm(moved[others], axis=1).max() < 100.0 * UM
+
+
+@pytest.mark.parametrize("wrong", [-0.1, 0.05])
+def test_a_wrong_radius_moves_no_foot_point(programs, small, chain, tmp_path, wrong) -> None:
+    """The set-up that imitates it would: the radius found was then off by 1 µm of 100.
+
+    Radius and set-up by a least squares of their own, over touches of a machine without errors.
+    """
+    paths = [p for p in programs.write(tmp_path) if p.suffix == ".H"]
+    machine = VirtualMachine(chain, radius_error=wrong)
+    run = simulate(paths, small, machine, np.random.default_rng(0)).run
+    t = run.touches
+    turned = np.cross(t.ball_artefact, t.normal) / 100.0
+    A = np.column_stack([np.ones(len(t)), t.normal, turned])
+    assert np.linalg.lstsq(A, run.deviation)[0][0] == pytest.approx(wrong, abs=0.05 * UM)

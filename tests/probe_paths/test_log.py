@@ -254,3 +254,28 @@ def test_a_second_run_replaces_no_log(adds_without_word):
         assert file[-len(once) :] == once
         assert len(file) > len(once)
         assert sum("MATSTD LOG 1" in line for line in file) == 2
+
+
+def _in_inches(part):
+    return replace(part, xyz=part.xyz / 25.4)
+
+
+def _mirrored(part, i):
+    return replace(part, xyz=part.xyz * np.where(np.arange(3) == i, -1.0, 1.0))
+
+
+@pytest.mark.parametrize(
+    ("mistake", "said"),
+    [
+        (_in_inches, "the readings of X, Y and Z are in inches"),
+        (lambda part: _mirrored(part, 1), "Y moves in the direction opposite"),
+        (lambda part: _mirrored(part, 0), "X moves in the direction opposite"),
+        (
+            lambda part: replace(part, rotary={**part.rotary, "B": -part.rotary["B"]}),
+            "B moves in the direction opposite",
+        ),
+    ],
+)
+def test_a_mistake_of_a_whole_log_is_named(parts, small, chain, mistake, said):
+    with pytest.raises(BadFile, match=f"such of .*, expected less than 10 mm: {said}"):
+        evaluate([mistake(part) for part in parts], small, chain, U)

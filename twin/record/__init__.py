@@ -4,7 +4,6 @@
 units. A new quantity that is recorded at every touch becomes a field of it; `Run` adds deviations.
 """
 
-from matstd.twin.record.alignment import Moved as Moved
 from matstd.twin.record.alignment import aligned as aligned
 from matstd.twin.record.alignment import rigid_motion as rigid_motion
 from matstd.twin.record.alignment import turn_of as turn_of
@@ -14,6 +13,9 @@ from matstd.twin.record.body import StatedBody as StatedBody
 from matstd.twin.record.body import with_body as with_body
 from matstd.twin.record.commanded import with_commanded as with_commanded
 from matstd.twin.record.copies import without_copies as without_copies
+from matstd.twin.record.run import FAR_SHIFT as FAR_SHIFT
+from matstd.twin.record.run import FAR_TURN as FAR_TURN
+from matstd.twin.record.run import Moved as Moved
 from matstd.twin.record.run import Run as Run
 from matstd.twin.record.several_runs import joined as joined
 from matstd.twin.record.several_runs import stacked as stacked

@@ -9,13 +9,13 @@ Reference:
     W. Kabsch, Acta Cryst. A32 (1976) 922: rotation between two sets of points.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
-from matstd.twin.frames import Array, apply
+from matstd.twin.frames import Array, apply, rotation_vector
 from matstd.twin.machine import tip
-from matstd.twin.record.run import Run
+from matstd.twin.record.run import Moved, Run
 from matstd.twin.record.touches import Touches, computed_deviation
 
 SHIFT = 0.3
@@ -30,15 +30,6 @@ MISALIGNED_RATIO = 10.0
 """Touches farther off than this multiple of the median are outliers and not used."""
 MIN_SPREAD = 1.0
 """Touches that spread less (mm) in a direction do not determine a rotation; it stays as stated."""
-
-
-@dataclass(frozen=True)
-class Moved:
-    """A set-up that was moved."""
-
-    name: str
-    shift: float  # displacement of the middle of its touches, mm
-    turn: float  # angle of its rotation, rad
 
 
 def aligned(run: Run) -> tuple[Run, tuple[Moved, ...]]:
@@ -67,11 +58,21 @@ def aligned(run: Run) -> tuple[Run, tuple[Moved, ...]]:
         turn = float(turn_of(R))
         if shift > SHIFT or turn > TURN:
             setups[i] = replace(setup, T_table_artefact=T)
-            moved.append(Moved(setup.name, shift, turn))
+            origin = T[:3, 3] - setup.T_table_artefact[:3, 3]
+            moved.append(
+                Moved(
+                    name=setup.name,
+                    shift=shift,
+                    turn=turn,
+                    turned=rotation_vector(R),
+                    origin=origin,
+                )
+            )
     if not moved:
         return run, ()
     touches: Touches = replace(t, setups=tuple(setups))
-    return replace(run, touches=touches, deviation=computed_deviation(touches)), tuple(moved)
+    placed = replace(run, touches=touches, deviation=computed_deviation(touches))
+    return replace(placed, moved=tuple(moved)), tuple(moved)
 
 
 def rigid_motion(

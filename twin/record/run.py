@@ -10,9 +10,31 @@ import numpy as np
 from matstd.twin.display import Displayed
 from matstd.twin.frames import Array, IntArray, Mask
 from matstd.twin.record.touches import Labels, Touches, check_rows, no_labels, no_numbers
+from matstd.twin.units import DEG
 
 PER_ROW = ("deviation", "u", "split", "repeat", "line", "program", "touch", "program_line")
 """Fields of `Run` with a value for each touch."""
+
+
+FAR_TURN, FAR_SHIFT = 3.0 * DEG, 20.0
+"""Turn and displacement (mm) of a standard from where it is stated to stand, beyond which it was
+not clamped as planned: one that was put down carelessly stands within 5 mm."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Moved:
+    """A set-up that stands elsewhere than stated."""
+
+    name: str
+    shift: float  # displacement of the middle of its touches, mm
+    turn: float  # angle of its rotation, rad
+    turned: Array  # the same as a vector about which it is, table frame, (3,), rad
+    origin: Array  # displacement of the origin of the standard, table frame, (3,), mm
+
+    @property
+    def is_far(self) -> bool:
+        """Whether the standard was clamped otherwise than planned."""
+        return self.turn > FAR_TURN or float(np.linalg.norm(self.origin)) > FAR_SHIFT
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -28,6 +50,7 @@ class Run(Displayed):
     repeat: IntArray | None = None
     line: IntArray = field(default_factory=no_numbers)  # of each row in its file, (N,)
     remarks: tuple[str, ...] = ()  # what the reader noticed and did about it, one clear line each
+    moved: tuple[Moved, ...] = ()  # set-ups that stand elsewhere than the file states
     date: datetime | None = None  # when it began; None where it is not recorded
     standard: str = ""  # name, serial number and digest of the probed one; "" where not recorded
     # name of the probing program that made each touch, (N,); "" where not recorded

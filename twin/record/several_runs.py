@@ -55,6 +55,11 @@ def joined(runs: Mapping[str, Run]) -> Run:
         touches=touches,
         **{name: _all_of([getattr(part, name) for part in parts]) for name in PER_ROW},
         remarks=(*_dropped(names, every), *of_parts),
+        moved=tuple(
+            replace(one, name=f"{n}/{one.name}")
+            for n, part in zip(names, parts, strict=True)
+            for one in part.moved
+        ),
         standard=stamps.pop() if len(stamps) == 1 else "",
     )
 
