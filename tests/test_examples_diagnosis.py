@@ -189,10 +189,10 @@ def test_the_spindle_run_is_the_record(tmp_path):
 
 @pytest.mark.slow
 def test_thermal_memory_is_found_in_the_spindle_and_halves_the_held_out_error():
-    """What is found does not rest on the sampling: here a row every half hour."""
+    """What is found does not rest on the sampling: here a row in 25 minutes instead of five."""
     make_run, warm_body = module(THERMAL / "make_run.py"), module(THERMAL / "warm_body.py")
     before_after = module(THERMAL / "before_after.py")
-    run = make_run.spindle_run(every=30)
+    run = make_run.spindle_run(every=25)
     found = diagnose(run, candidates=list(warm_body.propose(run.touches)))
     names = [e.name for e in found.found]
     assert "warm-body(C1,spindle_rpm)" in names
