@@ -14,6 +14,7 @@ from itertools import pairwise
 import numpy as np
 from scipy.linalg import block_diag
 
+from matstd.information.identifiability import column_lengths
 from matstd.twin.frames import Array
 from matstd.twin.library import proposals
 from matstd.twin.model import Effect, columns, is_tunable
@@ -49,8 +50,7 @@ def column_slices(effects: list[Effect]) -> list[slice]:
 
 def residual_after(C: Array, W: Array) -> Array:
     """Signatures (N, C) without what the rows of a model (N, P) can imitate of them."""
-    length = np.maximum(np.linalg.norm(W, axis=0), 1e-300)
-    U, s, _ = np.linalg.svd(W / length, full_matrices=False)
+    U, s, _ = np.linalg.svd(W / column_lengths(W), full_matrices=False)
     U = U[:, s > _RANK_TOLERANCE * s[0]]
     return C - U @ (U.T @ C)
 
@@ -101,6 +101,6 @@ def potential(touches: Touches, reduced: Array, count: int) -> Potential:
     sd = 1.0 / (MIN_VISIBLE_SHARE * np.sqrt(count))
     mix = sd * block_diag(np.zeros((0, 0)), *mixes)  # the empty one for no effects
     signatures = columns(effects, touches) @ mix
-    length = np.maximum(np.linalg.norm(reduced, axis=0), 1e-300)
+    length = column_lengths(reduced)
     imitation = np.linalg.lstsq(reduced / length, signatures, rcond=_RANK_TOLERANCE)[0]
     return Potential(tuple(effects), tuple(names), mix, imitation / length[:, None])

@@ -8,6 +8,7 @@ import numpy as np
 from scipy.linalg import orth
 
 from matstd.diagnosis.fit.identification import Fit
+from matstd.information.identifiability import column_lengths
 from matstd.twin.frames import Array, Mask
 from matstd.twin.model import Effect, Inner, columns, inner_values, traits
 from matstd.twin.numbers import rms
@@ -172,8 +173,7 @@ def curve_sizes(fit: Fit, effect: Effect) -> Sequence[Reported]:
         others = [e for e in fit.effects if e not in own]
         u = fit.u[fit.used][:, None]
         beside = columns(others, touches) / u
-        beside /= np.maximum(np.linalg.norm(beside, axis=0), 1e-300)
-        Q = orth(beside, rcond=RANK_TOLERANCE)
+        Q = orth(beside / column_lengths(beside), rcond=RANK_TOLERANCE)
         # which side of it a lever is on shows where the curve is not freed of others yet
         side = np.sign(np.einsum("np,np->n", C, curve))
         C = C - u * (Q @ (Q.T @ (C / u)))

@@ -31,6 +31,7 @@ from matstd.diagnosis.geometry.quantities import (
     geometric_effects,
     peak_to_valley,
 )
+from matstd.information.identifiability import column_lengths
 from matstd.twin.frames import Array
 from matstd.twin.machine import LETTERS, Chain, Family, Link, tip
 from matstd.twin.model import Model, traits
@@ -367,7 +368,7 @@ def _swings(fit: Fit, axis: str) -> Iterator[Array]:
 
 def _beside(columns: Array, values: Array) -> Array:
     """What least squares by columns (M, K) leave of values (M, ...)."""
-    unit = columns / np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
+    unit = columns / column_lengths(columns)
     return np.asarray(values - unit @ np.linalg.lstsq(unit, values, rcond=1e-9)[0])
 
 

@@ -20,6 +20,7 @@ from matstd.information.identifiability.freedoms import FreedomFamily as Freedom
 from matstd.information.identifiability.freedoms import Resolution as Resolution
 from matstd.information.identifiability.freedoms import Term as Term
 from matstd.information.identifiability.freedoms import in_families as in_families
+from matstd.information.identifiability.nullspace import column_lengths as column_lengths
 from matstd.information.identifiability.nullspace import rank_analysis as rank_analysis
 from matstd.information.identifiability.separation import Identifiability as Identifiability
 from matstd.information.identifiability.separation import identifiability as identifiability

@@ -22,8 +22,8 @@ from matstd.twin.frames import Array, Mask
 MIN_SINGULAR_RATIO = 1e-8
 """Singular value over the largest, columns of length one, below which a direction is invisible: far
 above rounding, far below the weakest visible direction of a probed run."""
-MIN_LENGTH_RATIO = 1e-9
-"""Length of a column over the longest below which its parameter moves nothing."""
+_MIN_LENGTH_RATIO = 1e-12
+"""Length of a column over the longest, in any units, below which it is rounding."""
 _MIN_WEIGHT_RATIO = 1e-6  # part of a direction's largest weight that counts as zero
 
 
@@ -54,7 +54,17 @@ class RankAnalysis:
 
 def _is_loud(length: Array) -> Mask:
     """Columns of some lengths that move anything, (P,)."""
-    return np.asarray(length > MIN_LENGTH_RATIO * length.max(initial=0.0))
+    return np.asarray(length > _MIN_LENGTH_RATIO * length.max(initial=0.0))
+
+
+def column_lengths(W: Array) -> Array:
+    """Lengths of the columns of W (N, P); infinite where only rounding is left, (P,).
+
+    A column divided by it is a direction, or nothing: rounding that is brought to length one would
+    count as a direction of the model, and another one on every processor.
+    """
+    length = np.linalg.norm(W, axis=0)
+    return np.where(_is_loud(length), length, np.inf)
 
 
 def rank_analysis(W: Array) -> RankAnalysis:

@@ -407,3 +407,10 @@ def test_what_a_model_imitates_does_not_depend_on_the_units_of_its_parameters():
     W = np.array([[1.0, 0.0], [0.0, 1e-9], [0.0, 0.0]])
     left = residual_after(np.array([[3.0], [4.0], [5.0]]), W)
     np.testing.assert_allclose(left, [[0.0], [0.0], [5.0]], atol=1e-12)
+
+
+def test_rounding_is_no_direction_of_a_model():
+    """A column that is zero but for rounding imitates nothing, wherever it points."""
+    W = np.array([[1e3, 0.0], [0.0, 2e-16], [0.0, 3e-16]])
+    left = residual_after(np.array([[3.0], [4.0], [5.0]]), W)
+    np.testing.assert_allclose(left, [[0.0], [4.0], [5.0]], atol=1e-12)
