@@ -19,6 +19,9 @@ _LEAST_SINE = np.sin(np.deg2rad(20.0))  # of a chart's angles: what Ruppert's re
 _LEAST = 0.02  # mm, nothing is refined for its angles below twice this
 _SHORTEST = 1e-4  # mm, of pieces that are halved until they are sides of triangles
 _ONE_PLACE = 1e-3  # mm: ends of two sides that are one corner and lie so near are one place
+_DIGITS = 9
+"""Decimals of places in a chart, mm. Four points of one circle, as a bore has them, have two
+triangulations; without these decimals the last digit decides, another one on each processor."""
 _ROUNDS = 60  # 15 to 25 are usual
 _ENOUGH = 0.8  # of the chord: distances between the tested points are a little larger
 
@@ -144,7 +147,13 @@ def _seed_points(face: Face, edges: Sequence[Edge], points: "_Points") -> None:
     x[1::2] += 0.5 * step[0]
     lattice = np.column_stack([x.ravel(), y.ravel()])
     free = cKDTree(rim).query(lattice)[0] > 0.7 * face.spacing
-    face.inner = lattice[free & Sheet(outline.places, outline.ends).contains(lattice)]
+    inside = Sheet(outline.places, outline.ends).contains(lattice)
+    face.inner = _settled(lattice[free & inside])
+
+
+def _settled(places: Array) -> Array:
+    """Places in a chart without what rounding leaves of equal ones."""
+    return np.asarray(np.round(places, _DIGITS), dtype=np.float64)
 
 
 def _halved(pieces: set[tuple[int, int]], edges: Sequence[Edge], points: "_Points") -> set[int]:
@@ -209,7 +218,7 @@ def _outline(face: Face, edges: Sequence[Edge]) -> _Outline:
             for side, n in zip(face.sides, counts, strict=True)
         ]
     )
-    every, number = np.concatenate(places), np.concatenate(ids)
+    every, number = _settled(np.concatenate(places)), np.concatenate(ids)
     # only where sides end can two of their points be one
     tips = np.unique(np.concatenate([starts, starts + counts - 1]))
     apart_by = np.linalg.norm(every[tips][:, None] - every[tips], axis=2)
@@ -256,7 +265,7 @@ def _improve(
         struck[found] = True
     centre[outside] = corner[order][outside].mean(axis=1)
     new = centre[~struck][separate_centres(centre[~struck], radius[~struck])]
-    face.inner = np.concatenate([face.inner, new])
+    face.inner = np.concatenate([face.inner, _settled(new)])
     return outline.pieces(hit), bool(len(new))
 
 

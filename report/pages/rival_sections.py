@@ -155,7 +155,8 @@ def detection_sections(found: Sequence[Detectable]) -> list[Section]:
     for d in found:
         by_kind.setdefault(d.effect.kind, []).append(d)
     seen = {
-        kind: sorted((d for d in each if d.largest is not None), key=lambda d: d.largest or 0.0)
+        # as the column shows them: what differs by rounding keeps the order of the library
+        kind: sorted((d for d in each if d.largest is not None), key=lambda d: float(_largest(d)))
         for kind, each in by_kind.items()
     }
     titles = {kind.word: kind.title for kind in kinds()}
@@ -166,10 +167,7 @@ def detection_sections(found: Sequence[Detectable]) -> list[Section]:
         title = f"{titles[kind]} `{kind}`" if titles[kind] else f"`{kind}`"
         count = str(len(hidden)) if hidden else ""
         rows.append([title, str(len(by_kind[kind])), *_ends(best), *_ends(worst), count])
-        every += [
-            [named(d.effect), _size(d), digits((d.largest or 0.0) / UM, 2), percent(d.survives)]
-            for d in seen[kind]
-        ]
+        every += [[named(d.effect), _size(d), _largest(d), percent(d.survives)] for d in seen[kind]]
         every += [[named(d.effect), "never: the model can imitate it", "", ""] for d in hidden]
     sizes = "from,\nat most"
     columns = ("kind", "effects", "most visible", sizes, "least visible", sizes, "never visible")
@@ -186,8 +184,11 @@ def _ends(found: Sequence[Detectable]) -> tuple[str, str]:
     """The first of some effects with its size and the deviation that it causes."""
     if not found:
         return "", ""
-    largest = digits((found[0].largest or 0.0) / UM, 2)
-    return named(found[0].effect), f"{_size(found[0])}\n{largest} µm"
+    return named(found[0].effect), f"{_size(found[0])}\n{_largest(found[0])} µm"
+
+
+def _largest(d: Detectable) -> str:
+    return digits((d.largest or 0.0) / UM, 2)
 
 
 def _size(d: Detectable) -> str:
