@@ -197,7 +197,7 @@ def _way(chain: Chain, place: Array, tables: Sequence[ErrorTable]) -> list[_Step
     way = [i for i in numbers if not chain.links[i].carries_workpiece][::-1]
     way += [i for i in numbers if chain.links[i].carries_workpiece][::-1]
     return [
-        _step(chain, chain.links[i], place[i], _sources(tables, i))
+        _step(chain, chain.links[i], place[i], _sources(tables, i, chain.links[i]))
         for i in way
         if chain.links[i].kind != "fixed"
     ]
@@ -205,17 +205,18 @@ def _way(chain: Chain, place: Array, tables: Sequence[ErrorTable]) -> list[_Step
 
 def _step(chain: Chain, link: Link, place: Array, sources: tuple[_Source, ...]) -> _Step:
     """One link with its line displaced and tilted, about its point."""
-    is_linear, tilt = link.kind == "linear", place[3:].copy()
+    is_linear, moved = link.kind == "linear", place.copy()
     if not is_linear:
-        tilt[link.own] = 0.0
+        moved[link.own_component] = 0.0
+    moved = link.in_machine(moved)
     side = -1.0 if link.carries_workpiece else 1.0
-    shift = np.zeros(3) if is_linear else place[:3]
+    shift = np.zeros(3) if is_linear else moved[:3]
     return _Step(
         axis=chain.axis_index(link.name),
         is_linear=is_linear,
         workpiece=link.carries_workpiece,
-        offset=float(place[link.own if is_linear else 3 + link.own]),
-        direction=_point(rotation(tilt) @ link.direction),
+        offset=float(place[link.own_component]),
+        direction=_point(rotation(moved[3:]) @ link.direction),
         point=_point(link.point + shift),
         ideal=_point(link.direction),
         lever=_point(link.point),
@@ -231,11 +232,11 @@ def _places(errors: MachineErrors, length: float) -> Array:
     return np.asarray(errors.contribution(errors.touches(middle, length)).place[0])
 
 
-def _sources(tables: Sequence[ErrorTable], link: int) -> tuple[_Source, ...]:
-    """Tables that have errors of a link, those of one axis's directions together."""
+def _sources(tables: Sequence[ErrorTable], i: int, link: Link) -> tuple[_Source, ...]:
+    """Tables that have errors of link i, those of one axis's directions together."""
     out: dict[tuple[object, ...], _Source] = {}
     for table in tables:
-        rows = table.rows[..., link, :]
+        rows = link.in_machine(table.rows[..., i, :])
         if not rows.any():
             continue
         turn, sign = next(iter(table.turns.items()), (-1, 0))

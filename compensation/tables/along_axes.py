@@ -110,12 +110,14 @@ class _Needed:
 
     @cached_property
     def zero(self) -> Array:
-        """Correction of the zeros of the linear axes, (A,), mm.
+        """Correction of the zeros of the axes, (A,), mm and rad.
 
         What the linear axes do wrong at the datum displaces them against the lines of the rotary
-        axes: a preset takes it up at one angle of the table and doubles it at the opposite one.
+        axes, and what a rotary axis does wrong there tilts the lines of those that it carries: a
+        preset takes it up at one angle of the table and doubles it at the opposite one.
         """
-        return correction(_OfLinearAxes(self.errors), self.there)[0]
+        linear = correction(_OfLinearAxes(self.errors), self.there)[0]
+        return np.asarray(linear + _rotary(self.errors, self.there)[0])
 
     @cached_property
     def aim(self) -> Array:
@@ -296,12 +298,11 @@ def _motion(errors: MachineErrors, touches: Touches) -> Array:
 
 
 def _unit_zero(errors: MachineErrors, datum: Datum) -> Array:
-    """Zeros of the linear axes per unit of every parameter, (A, P)."""
+    """Zeros of the axes per unit of every parameter, (A, P)."""
     chain, there = errors.chain, datum.touches(errors)
     links = [i for i, link in enumerate(chain.links) if link.kind == "linear"]
     moved = errors.columns(there, links)[0]
-    out = np.zeros((len(chain.axes), moved.shape[1]))
-    linear = chain.linear_columns
+    out, linear = _unit_rotary(errors, there)[0], chain.linear_columns
     out[linear] = -np.linalg.pinv(linear_directions(chain, there.q)[0]) @ moved
     return out
 

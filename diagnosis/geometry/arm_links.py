@@ -118,11 +118,12 @@ def _levers(chain: Chain, names: Sequence[str]) -> dict[str, float]:
 
 def _moved(lines: Lines, names: Sequence[str], chain: Chain, symbol: Symbol, step: float) -> Lines:
     """Lines at reading zero with one location error of a joint."""
-    i, e = names.index(symbol.link), np.eye(3)[symbol.component % 3] * step
+    i, link = names.index(symbol.link), chain.link(symbol.link)
+    e = link.frame[:, symbol.component % 3] * step
     point, direction = lines.point.copy(), lines.direction.copy()
     if symbol.component < 3:
         point[i] += e
-    elif symbol.component != chain.link(symbol.link).own_component:
+    elif symbol.component != link.own_component:
         direction[i] = rotation(e) @ direction[i]
     else:  # all that follow turn about it
         R = rotation(step * direction[i])

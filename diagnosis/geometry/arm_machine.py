@@ -45,6 +45,7 @@ def found_arm(fit: Fit) -> FoundArm | None:
         if link.is_joint:
             e = np.array([sizes.get((link.name, k), (0, 0.0))[1] for k in range(6)])
             zero, e[link.own_component] = e[link.own_component], 0.0
+            e = link.in_machine(e)
             point = apply(after, link.point + e[:3])
             direction = after[:3, :3] @ rotation(e[3:]) @ link.direction
             links.append(replace(link, point=point, direction=direction))

@@ -10,6 +10,7 @@ from matstd.diagnosis.geometry.quantities import Quantity
 from matstd.diagnosis.geometry.rivals import Descriptions, FoundNumber
 from matstd.diagnosis.geometry.rows import GeometryRow
 from matstd.diagnosis.policy import POLICY
+from matstd.twin.frames import Array
 from matstd.twin.machine import LETTERS, Link
 
 
@@ -72,25 +73,25 @@ def key_of(row: GeometryRow) -> str:
 
 def moved_point(link: Link, moved: Mapping[int, tuple[float, float]]) -> Correction:
     """A point of an axis by what is added to some coordinates, with its standard uncertainty."""
-    point = tuple(float(v) for v in link.point)
-    return Correction(
-        key=f"axis.{link.name}.point",
-        stated=point,
-        found=tuple(v + (moved[i][0] if i in moved else 0.0) for i, v in enumerate(point)),
-        u=tuple(moved[i][1] if i in moved else None for i in range(3)),
-    )
+    added, u = np.array([moved.get(i, (0.0, 0.0)) for i in range(3)]).T
+    return _correction(link, "point", link.point, link.point + link.frame @ added, link.frame * u)
 
 
 def turned_direction(link: Link, turned: Mapping[int, tuple[float, float]]) -> Correction:
     """A direction by small rotations and their uncertainties, as a file takes it: a unit vector."""
     omega, u_omega = np.array([turned.get(i, (0.0, 0.0)) for i in range(3)]).T
     d = link.direction
-    found = d + np.cross(omega, d)
-    found = found / np.linalg.norm(found)
-    u = np.sqrt((np.abs(np.cross(np.diag(u_omega), d)) ** 2).sum(axis=0))
+    found = d + np.cross(link.frame @ omega, d)
+    u = np.cross(link.frame * u_omega, d, axis=0)
+    return _correction(link, "direction", d, found / np.linalg.norm(found), u)
+
+
+def _correction(link: Link, key: str, stated: Array, found: Array, u: Array) -> Correction:
+    """A vector of a link as the file has it and as found; u (3, n) of n independent numbers."""
+    size = np.linalg.norm(u, axis=1)
     return Correction(
-        key=f"axis.{link.name}.direction",
-        stated=tuple(float(v) for v in d),
+        key=f"axis.{link.name}.{key}",
+        stated=tuple(float(v) for v in stated),
         found=tuple(float(v) for v in found),
-        u=tuple(float(v) if v > 0.0 else None for v in u),
+        u=tuple(float(v) if v > 0.0 else None for v in size),
     )

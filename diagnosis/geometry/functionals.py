@@ -44,6 +44,10 @@ TRAVEL_POINTS = 21
 MAX_READINGS = 400
 """Probed readings over which a line is fitted: more do not move a slope by a per cent."""
 
+ALONG = 0.9
+"""Cosine from which a linear axis goes along the line of a rotary one: an axis at 45° to it goes
+across, too."""
+
 MIN_SEEN_SHARE = 1e-3
 """Share of what a location error does that the others must not do, if it is seen beside them."""
 
@@ -323,7 +327,7 @@ def _line_of(fit: Fit, axis: str) -> dict[int, Array]:
         if effect.name in places and places[effect.name].link == axis
     }
     own.pop(link.own_component, None)  # its zero is a rotation of the standard, or of the tool
-    across = [a for a in chain.linear_axes if abs(chain.link(a).direction @ link.direction) < 0.5]
+    across = [a for a in chain.linear_axes if abs(chain.link(a).direction @ link.direction) < ALONG]
     left, size = [], np.zeros(len(fit.model.parameters))
     for i, sweep in enumerate(_swings(fit, axis)):
         ends_of_tool = []

@@ -101,9 +101,9 @@ def _viewpoint(test: PositioningTest, chain: Chain, q: Array) -> tuple[Array, Ar
         at, centre = np.tile(target, (n, 1)), middle - chain.table_origin
         return at, centre, np.cross(link.direction, tip(chain, q, at) - centre) / ARM
     if not test.is_angle:
-        along = link.direction if test.is_own else np.eye(3)["XYZ".index(test.component[1])]
+        along = link.direction if test.is_own else link.frame[:, "XYZ".index(test.component[1])]
         return np.zeros((n, 3)), np.zeros(3), along
-    about = np.eye(3)["ABC".index(test.component[1])]
+    about = link.frame[:, "ABC".index(test.component[1])]
     aside = np.cross(link.direction, about)
     if np.linalg.norm(aside) < MIN_SINE:  # for a roll any arm across the axis is right
         aside = np.roll(about, 1)

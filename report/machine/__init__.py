@@ -24,3 +24,4 @@ from matstd.report.machine.set_up import set_up_bodies as set_up_bodies
 from matstd.report.machine.set_up import standard_bodies as standard_bodies
 from matstd.report.machine.set_up import with_clearance as with_clearance
 from matstd.report.machine.solids import Drawn as Drawn
+from matstd.report.machine.swivel import swivel_remarks as swivel_remarks

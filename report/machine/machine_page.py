@@ -107,6 +107,7 @@ def _machine(chain: Chain) -> TREE:
                 "point": k.point.tolist(),
                 "axis": -1 if k.kind == "fixed" else chain.axis_index(k.name),
                 "own": 0 if k.kind == "fixed" else k.own,
+                **({} if k.is_along_letter else {"frame": k.frame.tolist()}),
             }
             for k in chain.links
         ],

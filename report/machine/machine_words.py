@@ -8,6 +8,7 @@ import numpy as np
 from matstd.report.machine.error_series import ErrorFunction
 from matstd.report.machine.played import Played
 from matstd.report.machine.solids import Drawn
+from matstd.report.machine.swivel import swivel_remarks
 from matstd.report.numbers import digits, microns, plural, um
 from matstd.twin.machine import Chain, parse_symbol
 from matstd.twin.units import UM
@@ -69,7 +70,7 @@ def machine_lead(shown: ShownMachine) -> str:
 
 def machine_notes(shown: ShownMachine) -> list[str]:
     """What the user should know of the errors and of the machine."""
-    return [*_own_notes(shown), *shown.chain.remarks]
+    return [*_own_notes(shown), *shown.chain.remarks, *swivel_remarks(shown.chain)]
 
 
 def _own_notes(shown: ShownMachine) -> list[str]:

@@ -14,7 +14,7 @@ from matstd.probe_paths.locate import Companions
 from matstd.probe_paths.plan import SMALLEST_GAP, Heading, TouchPlan, calibration_hash
 from matstd.probe_paths.stations import Station
 from matstd.report.layout import Page, Picture, Section, Table, write_page
-from matstd.report.machine import PLAYBACK, head_sections, write_playback
+from matstd.report.machine import PLAYBACK, head_sections, swivel_remarks, write_playback
 from matstd.report.numbers import plural
 from matstd.report.plots import draw_setup
 from matstd.twin.frames import fixed_xyz_angles
@@ -189,7 +189,7 @@ def _mount(plan: TouchPlan) -> list[Section]:
                 ["", *columns], [["at most ±", *limits], ["limited by", *reasons]], _TOLERANCE
             ),
             notes=[f"Clamp from outside the faces and spheres: {held}.{free}"],
-            warnings=[_BEYOND, *standing_remarks(plan.chain, T)],
+            warnings=[_BEYOND, *standing_remarks(plan.chain, T), *swivel_remarks(plan.chain)],
         ),
     ]
 

@@ -128,7 +128,9 @@ def _fill(chain: Chain, q: Array, length: Array, runs: Sequence[_Run], out: Arra
             axes = stand.carrier[run.directions]
         elif link.kind == "linear" and run.is_angular:
             # a tilt displaces by travel, across the axis
-            for column, across in zip(part, skew(link.direction)[run.directions], strict=True):
+            for column, across in zip(
+                part, skew(link.sense * np.eye(3)[link.own])[run.directions], strict=True
+            ):
                 np.multiply(_along(stand.carrier, across)[:3], stand.reading, out=column)
             continue
         else:
@@ -159,9 +161,12 @@ def _walk(chain: Chain, q: Array, length: Array) -> list[PoseCache]:
             t = _lever(t, axes, -link.point)
         if not link.carries_workpiece:  # the point is carried by the axis's own body
             lever = _lever(t, axes, link.point)
-        carrier = axes if link.carries_workpiece else before
+        old, new = (
+            a if link.is_along_letter else np.tensordot(link.frame.T, a, 1) for a in (before, axes)
+        )
+        carrier = new if link.carries_workpiece else old
         passed.append(
-            PoseCache(before=before, after=axes, carrier=carrier, arm=-lever, reading=reading)
+            PoseCache(before=old, after=new, carrier=carrier, arm=-lever, reading=reading)
         )
     tip = t - axes[2] * length
     return [link._replace(arm=tip + link.arm) for link in passed]
@@ -208,9 +213,9 @@ def _displaced(link: Link, stand: PoseCache, directions: slice, is_angular: bool
         moved = stand.before[directions] - stand.after[directions]
         if is_angular and directions.start <= link.own < directions.stop:
             # the zero position: a constant added to the reading
-            moved[link.own - directions.start] = _along(stand.carrier, link.direction)
+            moved[link.own - directions.start] = stand.carrier[link.own]
         return moved
-    return _along(stand.carrier, link.direction)[None]
+    return stand.carrier[link.own][None]
 
 
 def sensitivity(

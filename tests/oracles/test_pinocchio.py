@@ -55,6 +55,16 @@ MACHINES = {
 CASES = pytest.mark.parametrize("chain", MACHINES.values(), ids=list(MACHINES))
 
 
+def lean_of(link: Link) -> np.ndarray:
+    """Directions of the errors of an axis: its own, the others by the shortest arc."""
+    if link.kind == "fixed":
+        return np.eye(3)
+    letter = np.eye(3)["XYZABC".index(link.name[0]) % 3]
+    sense = np.sign(link.direction @ letter)
+    arc = pin.Quaternion.FromTwoVectors(letter, sense * link.direction).toRotationMatrix()
+    return arc @ np.diag(np.where(letter == 1.0, sense, 1.0))
+
+
 class Arm:
     """The serial arm: joints in order, with where each takes its configuration from."""
 
@@ -113,7 +123,8 @@ class Arm:
                     vector[3 + "ABC".index(link.name[0])] = 0.0
                 else:
                     vector[:3] = 0.0
-            pose = pin.SE3(pin.exp3(vector[3:]), vector[:3])
+            lean = lean_of(link)
+            pose = pin.SE3(pin.exp3(lean @ vector[3:]), lean @ vector[:3])
             # a displaced workpiece-side body comes up from behind: (D M D^-1)^-1 = D M^-1 D^-1
             if what == "line back" or (what == "place" and link.name == "w"):
                 pose = pose.inverse()
@@ -134,7 +145,8 @@ class Arm:
         for k, (what, link) in enumerate(self.sources):
             if what == "twist":
                 start = self.model.joints[k + 1].idx_v
-                out[self.chain.link_index(link.name)] = J[:3, start : start + 6].T
+                moved = J[:3, start : start + 6].T.reshape(2, 3, 3)
+                out[self.chain.link_index(link.name)] = (lean_of(link).T @ moved).reshape(6, 3)
         return out
 
     def tip_frame(self, tip: pin.SE3) -> int:
@@ -207,7 +219,7 @@ def test_weights_turn_the_joints_of_an_arm_as_gravity_does():
     """Generalised gravity of an arm with masses at its joints and flange is what holds it up.
 
     A joint gives way by the compliance times the negative of that, about its own line: the twist
-    has the component of the line's direction along the letter.
+    is that of the joint's own letter.
     """
     touches = arm_poses()
     model, masses = pin.Model(), {}
@@ -236,5 +248,6 @@ def test_weights_turn_the_joints_of_an_arm_as_gravity_does():
         effect = KIND.make(ARM, [name])
         theta = np.array([masses[p] for p in effect.places])
         twist = contribution([(effect, theta)], touches).twist[:, ARM.link_index(name), 3:]
-        expected = -holding[:, i, None] * ARM.link(name).direction
+        own = np.eye(3)["ABC".index(name[0])]
+        expected = -holding[:, i, None] * own
         np.testing.assert_allclose(twist, expected, atol=1e-9 * scale)

@@ -303,10 +303,20 @@ def _none(chain, n):
 
 
 @pytest.mark.browser
-@pytest.mark.parametrize("path", MACHINES, ids=lambda p: p.stem)
-def test_bodies_stand_where_the_twin_has_them(browser, path, tmp_path):
+@pytest.mark.parametrize(
+    ("path", "leans"),
+    [*((path, False) for path in MACHINES), (HSM, True)],
+    ids=lambda value: getattr(value, "stem", "leaning" if value else "upright"),
+)
+def test_bodies_stand_where_the_twin_has_them(browser, path, leans, tmp_path):
     """Bodies by the chain of carriers; the tool seen from the table with random errors."""
-    chain = read_machine(path)
+    text = path.read_text(encoding="utf-8")
+    if leans:  # a swivel of 45 degrees, and an axis against its letter
+        text = text.replace("[axis.B]", "[axis.B]\ndirection = [0.0, -1.0, 1.0]")
+        text = text.replace("[axis.Y]", "[axis.Y]\ndirection = [0.0, -1.0, 0.0]")
+    (tmp_path / "machine.toml").write_text(text, encoding="utf-8")
+    chain = read_machine(tmp_path / "machine.toml")
+    assert any(not link.is_along_letter for link in chain.links) is leans
     rng = np.random.default_rng(5)
     low, high = np.array([chain.link(a).range for a in chain.axes]).T
     q = rng.uniform(low, high, (5, len(low)))

@@ -74,6 +74,26 @@ MACHINES = {
         },
         (0.0, 0.0, -450.0),
     ),
+    "tilted the other way": make_chain(
+        "tilted the other way",
+        "[w C' B' f X Y Z t]",
+        TRAVEL
+        | {
+            "B": turning(5.0, -7.0, -430.0, direction=(0.1, -1.0, 0.8)),
+            "C": turning(-4.0, 9.0, -300.0),
+        },
+        (0.0, 0.0, -450.0),
+    ),
+    "against its letter": make_chain(
+        "against its letter",
+        "[w X' f Y Z B t]",
+        TRAVEL
+        | {
+            "X": Axis(range=(-300.0, 300.0), direction=(-1.0, 0.0, 0.0)),
+            "B": turning(5.0, -7.0, 130.0, direction=(0.0, -1.0, 0.0)),
+        },
+        (0.0, 0.0, -450.0),
+    ),
     "slanted linear axis": make_chain(
         "slanted linear axis",
         "[w A' Y' f X Z t]",
@@ -190,11 +210,18 @@ def test_readings_of_a_wrong_shape_are_refused():
 
 
 @pytest.mark.parametrize(
-    ("machine", "axis", "symbol"),
-    [("slanted linear axis", "Y", "EY0Y"), ("nutating table", "B", "EB0B")],
+    ("machine", "axis", "symbols"),
+    [
+        ("slanted linear axis", "Y", ("EY0Y", "EYY")),
+        ("nutating table", "B", ("EB0B", "EBB")),
+        ("tilted the other way", "B", ("EB0B", "EBB")),
+        ("against its letter", "X", ("EX0X", "EXX")),
+        ("against its letter", "B", ("EB0B", "EBB")),
+    ],
 )
-def test_a_zero_position_error_adds_to_the_reading_whatever_the_direction(machine, axis, symbol):
-    chain = MACHINES[machine]
+@pytest.mark.parametrize("which", ["zero position", "positioning"])
+def test_an_error_of_its_own_letter_adds_to_the_reading(machine, axis, symbols, which):
+    chain, symbol = MACHINES[machine], symbols[which == "positioning"]
     q = random_readings(chain, 10)
     size = 1e-4
     read_wrong = q.copy()

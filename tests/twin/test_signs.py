@@ -231,3 +231,24 @@ def test_nominal_point_of_a_tilting_head():
 def test_signs_of_a_tilting_head(name):
     q = readings(HEAD, X=100, Y=50, Z=-200, A=90)
     assert_deviation(HEAD, q, name, HEAD_CASES[name])
+
+
+# a table that swivels about (0, -1, 1) through (0, 0, -500), tip at (100, 0, -400), all at zero;
+# µm for 1 µm and 10 µrad: b = (0, -1, 1), and across it a = (1, 0, 0), c = (0, 1, 1), over root 2
+SWIVEL_BY_HAND = {
+    "EXB": (1, 0, 0),
+    "EYB": (0, -(0.5**0.5), 0.5**0.5),
+    "EZB": (0, 0.5**0.5, 0.5**0.5),
+    "EAB": (0, -1, 0),  # a x (100, 0, 100) = (0, -100, 0)
+    "EBB": (-(0.5**0.5), 0.5**0.5, 0.5**0.5),  # b x (100, 0, 100) = (-100, 100, 100) / root 2
+    "ECB": (0.5**0.5, 0.5**0.5, -(0.5**0.5)),  # c x (100, 0, 100) = (100, 100, -100) / root 2
+}
+
+
+@pytest.mark.parametrize("name", SWIVEL_BY_HAND)
+def test_signs_of_an_inclined_swivel(name):
+    swivel = Axis((-3.0, 3.0), (0.0, 0.0, -500.0), (0.0, -1.0, 1.0))
+    travels = dict.fromkeys("XYZ", Axis((-500.0, 500.0)))
+    chain = make_chain("swivel", "[w B' f X Y Z t]", travels | {"B": swivel})
+    q = readings(chain, X=100, Z=-400 + LENGTH)
+    assert_deviation(chain, q, name, SWIVEL_BY_HAND[name])

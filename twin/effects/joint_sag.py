@@ -82,11 +82,8 @@ class JointSag(Declared):
             after = chain.links[-1] if place == FLANGE else chain.link(place)
             lever = apply(_body_before(touches, after), after.point) - point
             torque = np.einsum("ni,ni->n", line, np.cross(lever, DOWN))
-            out += [
-                Term(k, Where("twist", chain.link_index(self.joint), 3 + c), torque * float(d))
-                for c, d in enumerate(link.direction)
-                if d
-            ]
+            about = Where("twist", chain.link_index(self.joint), link.own_component)
+            out.append(Term(k, about, torque))
         return tuple(out)
 
 

@@ -89,12 +89,14 @@ class Body(Declared):
         side = 1.0 if self.on_tool_side else -1.0
         moved = np.einsum("ncd,nd->nc", by_load, self._carried(touches))
         moved += own @ _unit(self.down)
+        link = touches.chain.links[i]
+        moved = link.in_frame(moved)
         out = [Term(0, Where("twist", i, c), side * moved[:, c]) for c in range(6)]
         if touches.force is not None:
             # force and moment at the frame, conjugate to its six motions; on either side of the
             # machine the tool moves with its load relative to the workpiece
             loads = np.einsum("nci,ni->nc", touches.reach.twist[:, i], touches.force)
-            bent = np.einsum("ncd,nd->nc", by_load, loads)
+            bent = link.in_frame(np.einsum("ncd,nd->nc", by_load, link.in_machine(loads)))
             out += [Term(1, Where("twist", i, c), bent[:, c]) for c in range(6)]
         return out
 

@@ -31,7 +31,8 @@ class AxisTable(Table):
     mm, machine frame, every axis at zero. Default: the machine origin, with a remark for a rotary
     axis"""
     direction: Vector | None = Field(default=None, examples=[[0.0, 0.0, 1.0]])
-    """direction of travel or of the line, machine frame. Default: the direction of the letter"""
+    """direction of travel or of the line, machine frame, along which or about which errors of the
+    axis's own letter act ([conventions](../conventions.md#errors)). Default: that of the letter"""
     pitch: float | None = Field(default=None, examples=[10.0])
     """pitch of the screw or scale of a linear axis, mm. `diagnose` searches for errors at it and
     at its whole fractions even if the targets are too far apart to resolve them, and prefers them

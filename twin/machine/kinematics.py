@@ -131,8 +131,9 @@ def place_as_twist(chain: Chain, q: Array, twist: Array) -> Array:
     workpiece side, (e, r) the displacement and k the component of the axis's own letter: a linear
     axis gives ``e' = d e_k + q r x d``; a rotary one ``(e', r') = s (1 - R)(e, r)`` for the
     components across its letter, and for its zero position ``r' = d r_k``, which adds to the
-    reading whatever the direction; the tool ``(e, r)``; the workpiece ``-(e, r)``, since the twist
-    is tool minus workpiece.
+    reading; the tool ``(e, r)``; the workpiece ``-(e, r)``, since the twist is tool minus
+    workpiece. All in the frame of the axis (`Link.frame`), in which d is its letter; against the
+    letter that frame is left-handed, and cross products and rotations change their sign.
 
     Args:
         twist: What a unit of every component of the twists does, (N, L, 6, 3).
@@ -146,15 +147,15 @@ def place_as_twist(chain: Chain, q: Array, twist: Array) -> Array:
         if link.kind == "fixed":
             there[:] = _sign(link) * twist[:, i]
             continue
-        d, reading = link.direction, _readings_of(chain, link, q)
+        d, reading = link.sense * np.eye(3)[link.own], _readings_of(chain, link, q)
         if link.kind == "linear":
-            there[:, link.own] = d @ shifts
+            there[:, link.own] = shifts[:, link.own]
             there[:, 3:] = reading[:, None, None] * (np.cross(np.eye(3), d) @ shifts)
         else:
             R = np.swapaxes(_about(d, _sign(link) * reading), -1, -2)
             there[:, :3] = _sign(link) * (shifts - R @ shifts)
             there[:, 3:] = _sign(link) * (turns - R @ turns)
-            there[:, 3 + link.own] = d @ turns
+            there[:, 3 + link.own] = turns[:, link.own]
     return out
 
 
@@ -163,8 +164,9 @@ def reach(chain: Chain, q: Array, length: Array | float) -> Reach:
 
     A component error (e, r) of link k moves the tip, relative to the table, by
     ``R_table_carrier (e + r x (x - c))``, with x the tip and c the lever point of the link, both
-    in the frame of the body that the link sits on. The sign is the same on both sides of the
-    foundation because a component error is tool side minus workpiece side. Lengths are as of `tip`.
+    in the frame of the body that the link sits on, and e, r in `Link.frame`. The sign is the same
+    on both sides of the foundation because a component error is tool side minus workpiece side.
+    Lengths are as of `tip`.
 
     Reference:
         ISO 230-1:2012 for the parameters; J is the influence matrix of Bringmann and Knapp.
@@ -179,6 +181,9 @@ def reach(chain: Chain, q: Array, length: Array | float) -> Reach:
     points = [_lever_point(link, _readings_of(chain, link, q)) for link in chain.links]
     arm = np.einsum("nlk,nlki->nli", local - np.stack(points, axis=1), axes)
     twist = np.concatenate([axes, axes @ skew(arm)], axis=2)
+    for i, link in enumerate(chain.links):
+        if not link.is_along_letter:
+            twist[:, i] = (link.frame.T @ twist[:, i].reshape(-1, 2, 3, 3)).reshape(-1, 6, 3)
     return Reach(twist, place_as_twist(chain, q, twist))
 
 

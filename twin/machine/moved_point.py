@@ -112,11 +112,13 @@ def _step(chain: Chain, i: int, q: Array, contribution: Contribution | None) -> 
     twist, place = _rows(contribution, "twist", i), _rows(contribution, "place", i)
     far = travel
     if place is not None and link.kind != "fixed":
-        turn = place[3:].copy()
+        far, moved = travel + place[link.own_component], place.copy()
         if link.kind == "rotary":  # about its own letter it is the zero of the reading
-            turn[link.own] = 0.0
-        far, along = travel + place[link.own_component], _turned(turn, along)
-        point, place = point + place[:3], None
+            moved[link.own_component] = 0.0
+        moved = link.in_machine(moved.T).T
+        along, point, place = _turned(moved[3:], along), point + moved[:3], None
+    if twist is not None:
+        twist = link.in_machine(twist.T).T
     return _Step(
         link=link, travel=travel, far=far, along=along, point=point, place=place, twist=twist
     )

@@ -61,10 +61,11 @@ class ColumnBending(Declared):
     def terms(self, touches: Touches) -> Sequence[Term]:
         """Twists of the axis: the rotation r, and its integral along the column, r x d."""
         i = touches.chain.link_index(self.axis)
-        low, high = touches.chain.links[i].range
+        link = touches.chain.links[i]
+        low, high = link.range
         height = (touches.reading(self.axis) - low) / (high - low)
         gradient = sensor_record(touches, self.warm) - sensor_record(touches, self.cold)
-        along = np.eye(3)[self.component]
+        along = link.sense * np.eye(3)[self.component]
         out = []
         for k, about in enumerate(self._across):
             moved = np.cross(np.eye(3)[about], along)

@@ -44,6 +44,7 @@ def run(args: argparse.Namespace) -> int:
     """Design, with a bar for every stage; the folder appears whole or not at all."""
     from matstd.api.designing import Project
     from matstd.artefact.reach import standing_remarks
+    from matstd.report.machine import swivel_remarks
     from matstd.report.task import fewer_lines, making_lines, task_lines
     from matstd.report.words import design_lines, proof_line
 
@@ -52,6 +53,7 @@ def run(args: argparse.Namespace) -> int:
     say_each(brief.chain.remarks)
     say_each(brief.remarks)
     say_each(standing_remarks(brief.chain, brief.setup.T_table_artefact, brief.down))
+    say_each(swivel_remarks(brief.chain))
     with stages(PLAN if brief.chain.rotary_axes else LINEAR_PLAN) as progress:
         made = project.design(
             args.output, force=args.force, progress=progress, scheduler=args.scheduler, pdf=args.pdf

@@ -1,8 +1,9 @@
 // Kinematics of a machine, nominal and with errors, as `matstd.twin.machine` has them; mm and rad.
 //
-// A machine: { links: [{ name, kind, carries, direction, point, axis, own }], origin }, links from
-// workpiece to tool; axis: column of the readings, or -1. Errors: { twist, place }, six numbers a
-// link (X Y Z A B C, tool side minus workpiece side), or null for the nominal machine.
+// A machine: { links: [{ name, kind, carries, direction, point, axis, own, frame }], origin }, links
+// from workpiece to tool; axis: column of the readings, or -1. Errors: { twist, place }, six numbers
+// a link (X Y Z A B C, tool side minus workpiece side), or null for the nominal machine; their
+// directions are the columns of frame, of an inclined axis, or those of the machine.
 
 const SMALL = 1e-4;  // square of an angle below which three terms of a series are exact
 
@@ -59,18 +60,25 @@ function six(errors, part, i) {
   return values.some(v => v !== 0) ? values : null;
 }
 
+/** Six errors of a link in directions of the machine. */
+function inMachine(link, values) {
+  if (!values || !link.frame) return values;
+  const part = k => link.frame.map(row => row[0] * values[k] + row[1] * values[k + 1] + row[2] * values[k + 2]);
+  return [...part(0), ...part(3)];
+}
+
 /** What one link does to a point that passes it. */
 function stepOf(machine, i, q, errors) {
   const link = machine.links[i], travel = link.axis < 0 ? 0 : q[link.axis];
-  const twist = six(errors, "twist", i);
+  const twist = inMachine(link, six(errors, "twist", i));
   let place = six(errors, "place", i), far = travel, along = link.direction, point = link.point;
   if (place && link.kind !== "fixed") {
-    const turn = [place[3], place[4], place[5]];
+    const own = (link.kind === "rotary" ? 3 : 0) + link.own;
     // about its own letter it is the zero of the reading
-    if (link.kind === "rotary") turn[link.own] = 0;
-    far = travel + place[(link.kind === "rotary" ? 3 : 0) + link.own];
-    along = turned(turn, along);
-    point = [point[0] + place[0], point[1] + place[1], point[2] + place[2]];
+    const moved = inMachine(link, place.map((v, k) => link.kind === "rotary" && k === own ? 0 : v));
+    far = travel + place[own];
+    along = turned([moved[3], moved[4], moved[5]], along);
+    point = [point[0] + moved[0], point[1] + moved[1], point[2] + moved[2]];
     place = null;
   }
   return { link, travel, far, along, point, place, twist };
