@@ -37,9 +37,8 @@ def _swivel(link: Link) -> str:
     return (
         f"Axis {link.name} turns about {_listed(link.direction)}. At {link.name} = {at / DEG:g}° "
         f"{what} towards {this} of the machine. Turn it by hand before the first program and look: "
-        f"if it is {other}, the direction in the machine file has the other sign, and programs "
-        "would hit the standard. The errors of this axis have the directions of its line and of "
-        "two axes across it."
+        f"if it looks towards {other}, the direction in the machine file has the other sign, and "
+        "programs would hit the standard."
     )
 
 

@@ -36,8 +36,8 @@ def test_where_a_swivel_looks(notation, direction, words):
     assert f"At B = 90° {words}" in remark
     (mirrored,) = swivel_remarks(chain_with(notation, tuple(-v for v in direction)))
     looks = [text.split("towards ")[1].split("]")[0] for text in (remark, mirrored)]
-    assert f"if it is {looks[1]}" in remark
-    assert f"if it is {looks[0]}" in mirrored
+    assert f"if it looks towards {looks[1]}" in remark
+    assert f"if it looks towards {looks[0]}" in mirrored
 
 
 @pytest.mark.parametrize("direction", [None, (0.0, -1.0, 0.0), (0.01, 1.0, 0.0)])
