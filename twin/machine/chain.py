@@ -267,6 +267,8 @@ class Chain(Displayed):
         numbers = [np.array(self.table_origin)]
         for link in self.links:
             numbers += [np.array(getattr(link, key)) for key in ("range", "point", "direction")]
+            # models of before, whose errors have the directions of the machine, are refused
+            numbers += [] if link.is_along_letter else [link.frame]
         text = " ".join(f"{v + 0.0:.6f}" for part in numbers for v in np.round(part, 6).ravel())
         words = f"{self.name} {' '.join(self.notation.split())} {text}"
         return hashlib.sha256(words.encode()).hexdigest()[:12]
