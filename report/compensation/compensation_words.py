@@ -66,7 +66,7 @@ def result_sentence(result: Result) -> str:
     before, after = rms_length(result.before) / UM, rms_length(result.after) / UM
     words = f"{digits(before)} -> {small(after)} µm rms over the workspace"
     worst = np.linalg.norm(result.after, axis=1).max() / UM
-    words += f" (worst of {len(result.q)} poses {small(worst)} µm)"
+    words += f" (worst of {poses_words(result)} {small(worst)} µm)"
     if result.u_rms > NM:
         numbers = (result.u_rms, result.expected_before, result.expected)
         u, was, will = (digits(v / UM, 2) for v in numbers)
@@ -77,6 +77,11 @@ def result_sentence(result: Result) -> str:
             f" with tools set relative to the probe of the measurement ({others} µm with others)"
         )
     return words
+
+
+def poses_words(result: Result) -> str:
+    """`256 poses in both directions`: where an axis reverses, each is judged after both motions."""
+    return f"{len(result.q)} poses" + (" in both directions" if result.has_directions else "")
 
 
 def small(value: float, significant: int = 3) -> str:
