@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from matstd.commands.measured.results import made_in_folder, say_files
 from matstd.console import console, say, say_each
@@ -120,15 +120,14 @@ def _last_state(found: Diagnosis) -> list[str]:
     at = touches[np.array([last])]
     is_found = any(step.effect is not None for step in found.steps)
     out = ["--after", f"{touches.time[last] / MINUTE:.0f}"] if is_found else []
-    for option, known, digits in (
-        ("temperature", at.temperature, ".1f"),
-        ("value", at.value, ".6g"),
-    ):
-        others = {name: {n: v for n, v in known.items() if n != name} for name in known}
-        asked = [
-            n for n, left in others.items() if _is_short(effects, replace(at, **{option: left}))
-        ]
-        out += [f"--{option}", *(f"{n}={known[n][0]:{digits}}" for n in asked)] if asked else []
+    columns = {"temperature": (at.temperature, ".1f"), "value": (at.value, ".6g")}
+    for option, (known, digits) in columns.items():
+        asked = []
+        for name in known:
+            others: dict[str, Any] = {option: {n: v for n, v in known.items() if n != name}}
+            if _is_short(effects, replace(at, **others)):
+                asked.append(f"{name}={known[name][0]:{digits}}")
+        out += [f"--{option}", *asked] if asked else []
     if at.spindle_rpm is not None and _is_short(effects, replace(at, spindle_rpm=None)):
         out += ["--rpm", f"{at.spindle_rpm[0]:.0f}"]
     return out
@@ -141,11 +140,7 @@ def _is_short(effects: Sequence[Effect], at: Touches) -> bool:
     try:
         for effect in effects:
             effect.terms(at)
-    except (
-        UnknownEffect,
-        KeyError,
-        TypeError,
-    ):  # an effect of the user's own may look it up itself
+    except (UnknownEffect, KeyError, TypeError):  # a user's effect may look it up by itself
         return True
     return False
 
