@@ -46,7 +46,7 @@ def feels_direction(errors: MachineErrors, q: Array) -> bool:
 
 
 def in_both_directions(errors: MachineErrors, q: Array, length: float) -> Touches:
-    """Poses after motions of every axis in both directions, which a reversal tells apart.
+    """Poses after motions of every axis in both directions, which a reversal distinguishes.
 
     The axes of a pose have directions of their own, evenly spread, and the opposite ones in its
     second row: so reversals of several axes neither add up nor cancel over a workspace.
