@@ -20,6 +20,8 @@ from matstd.compensation.field.over_workspace import Share as Share
 from matstd.compensation.field.over_workspace import UncorrectedError as UncorrectedError
 from matstd.compensation.field.over_workspace import aligned as aligned
 from matstd.compensation.field.over_workspace import contributions as contributions
+from matstd.compensation.field.over_workspace import feels_direction as feels_direction
+from matstd.compensation.field.over_workspace import in_both_directions as in_both_directions
 from matstd.compensation.field.over_workspace import relative_columns as relative_columns
 from matstd.compensation.field.over_workspace import result_of as result_of
 from matstd.compensation.field.over_workspace import sample_workspace as sample_workspace

@@ -39,6 +39,33 @@ def sample_workspace(
     return q
 
 
+def feels_direction(errors: MachineErrors, q: Array) -> bool:
+    """Whether anything depends on the direction of the last motions at some poses, (N, A)."""
+    ways = [errors.contribution(errors.touches(q, 0.0, np.full_like(q, s))) for s in (1.0, -1.0)]
+    return any(not np.array_equal(*(getattr(w, part) for w in ways)) for part in ("twist", "place"))
+
+
+def in_both_directions(errors: MachineErrors, q: Array, length: float) -> Touches:
+    """Poses after motions of every axis in both directions, which a reversal distinguishes.
+
+    The axes of a pose have directions of their own, evenly spread, and the opposite ones in its
+    second row: so reversals of several axes neither add up nor cancel over a workspace.
+
+    Args:
+        q: Readings, (N, A).
+        length: Length of the tool, mm.
+
+    Returns:
+        2N poses; N between both directions where nothing depends on them.
+    """
+    if not feels_direction(errors, q):
+        return errors.touches(q, length)
+    # the coordinates behind those of the readings (`sample_workspace`), which are spread alike
+    unit = even_points(len(q), 2 * q.shape[1])[:, q.shape[1] :]
+    approach = np.where(unit < 0.5, -1.0, 1.0)
+    return errors.touches(np.vstack([q, q]), length, np.vstack([approach, -approach]))
+
+
 @dataclass(frozen=True, slots=True)
 class UncorrectedError:
     """One error that a compensation does not remove completely."""
@@ -54,13 +81,20 @@ class Result:
     """What a compensation does over a workspace, the workpiece being aligned (`aligned`), mm."""
 
     q: Array  # poses, (N, A)
-    before: Array  # deviation of the tool point without it, (N, 3)
-    after: Array  # the same with it, by the exact twin with the estimates as the truth, (N, 3)
-    # standard uncertainty of both from that of the model, (N,), of the length of the error vector's
+    # deviation of the tool point without it, (M, 3): M = N, or 2N in both directions of motion
+    # where the errors depend on them (`in_both_directions`)
+    before: Array
+    after: Array  # the same with it, by the exact twin with the estimates as the truth, (M, 3)
+    # standard uncertainty of both from that of the model, (M,), of the length of the error vector's
     # three components together
     u: Array
     u_tool: float  # added to the rms where tools are not set against the probe that measured, mm
     left: tuple[UncorrectedError, ...]  # errors with a remainder, the largest first
+
+    @property
+    def has_directions(self) -> bool:
+        """Whether every pose is judged in both directions of motion."""
+        return len(self.before) > len(self.q)
 
     @property
     def u_rms(self) -> float:
@@ -111,10 +145,10 @@ def result_of(
     """Before and after over some poses, and the remainder of every error.
 
     Args:
-        unheld: What the compensation leaves per unit of every parameter, first order, (N, 3, P);
-            None where nothing is broken down.
+        unheld: What the compensation leaves per unit of every parameter, first order, (M, 3, P), at
+            the poses of `in_both_directions`; None where nothing is broken down.
     """
-    touches = errors.touches(q, datum.length)
+    touches = in_both_directions(errors, q, datum.length)
     points = touches.point
     columns = aligned(points, errors.columns(touches))
     spread, tool = columns @ errors.root, columns @ errors.tool_root
@@ -123,7 +157,7 @@ def result_of(
         before=aligned(points, deviation(errors, touches)),
         after=aligned(points, deviation_after(errors, touches, corrects(touches))),
         u=np.sqrt(np.einsum("nik,nik->n", spread, spread)),
-        u_tool=float(np.sqrt(np.einsum("nik,nik->", tool, tool) / len(q))),
+        u_tool=float(np.sqrt(np.einsum("nik,nik->", tool, tool) / len(touches))),
         left=() if unheld is None else _uncorrected(errors, columns, aligned(points, unheld)),
     )
 

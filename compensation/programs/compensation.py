@@ -99,6 +99,7 @@ class Compensated(Displayed):
     tolerance: float  # tolerance to which lines were divided, mm
     u: Array  # standard uncertainty of both from that of the model at some points, (M,), mm
     u_at: IntArray  # those points, (M,)
+    u_tool: float  # added to their rms where tools are not set against the probe that measured, mm
     # lines of motions that stay as they are, since no place is known there
     unmoved: tuple[int, ...]
 
@@ -165,7 +166,8 @@ def compensated(
     aim = nominal + path.aim
     # the uncertainty varies slowly along a program, so some points are enough
     some = spread_rows(len(which), MAX_U_POINTS)
-    spread = aligned(nominal[some], errors.columns(touches[some])) @ errors.root
+    columns = aligned(nominal[some], errors.columns(touches[some]))
+    spread, tool = columns @ errors.root, columns @ errors.tool_root
     return Compensated(
         program=program,
         text=_text(path, head, done, output or program.path),
@@ -180,6 +182,7 @@ def compensated(
         tolerance=tolerance,
         u=np.sqrt(np.einsum("nik,nik->n", spread, spread)),
         u_at=some,
+        u_tool=float(np.sqrt(np.einsum("nik,nik->", tool, tool) / len(some))),
         unmoved=tuple(k.line for k in program.items if isinstance(k, Keep) and k.moves),
     )
 

@@ -5,7 +5,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from matstd.compensation.field import MachineErrors, correction
+from matstd.compensation.field import (
+    MachineErrors,
+    correction,
+    feels_direction,
+    sample_workspace,
+)
 from matstd.compensation.part_programs import Paths, Program, forces
 from matstd.twin.frames import Array, IntArray, Mask
 from matstd.twin.record import Touches, last_signs
@@ -43,7 +48,7 @@ class ProgramPath:
         self.kinds = sorted(set(kinds))
         self.kind = np.array([self.kinds.index(kind) for kind in kinds])
         self.aim = self.frame.datum.deviation(errors)
-        self.last = self._last_moves() if _feels_approach(errors) else None
+        self.last = self._last_moves() if self._feels_direction() else None
         usual = np.array(errors.state.force or (0.0, 0.0, 0.0))
         lines = [m.line for m in self.motions]
         self.force = forces(lines, program.loads, usual) if program.loads else None
@@ -108,6 +113,10 @@ class ProgramPath:
         out[rows] = self.paths.start[which[rows]]
         return out
 
+    def _feels_direction(self) -> bool:
+        chain = self.errors.chain
+        return feels_direction(self.errors, sample_workspace(chain, {}, _TRIED_POSES))
+
     def _moving(self, which: IntArray, share: Array) -> Array:
         """Sign of every axis's motion, (N, A); 0 where it stands."""
         ends = [np.clip(share + step, 0.0, 1.0) for step in (-_STEP, _STEP)]
@@ -125,11 +134,5 @@ class ProgramPath:
         return np.where(moving != 0.0, moving, self.last[which])
 
 
+_TRIED_POSES = 16  # at which a reversal is looked for: a law's may be zero at single ones
 _STEP = 1e-4  # share of a motion over which its direction is taken
-
-
-def _feels_approach(errors: MachineErrors) -> bool:
-    """Whether anything depends on the side that an axis comes from."""
-    q = np.zeros((1, len(errors.chain.axes)))
-    sides = [errors.contribution(errors.touches(q, 0.0, np.full_like(q, s))) for s in (1.0, -1.0)]
-    return not np.array_equal(sides[0].twist, sides[1].twist)

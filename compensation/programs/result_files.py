@@ -88,6 +88,7 @@ def write_program_result(path: str | Path, done: Compensated) -> None:
         },
         "between_line_ends": {"worst_um": in_um(done.worst_between) if done.is_cut else None},
         "model_u_um": in_um(rms(done.u)),
+        "tool_u_um": in_um(done.u_tool),
         "largest_correction_um": in_um(np.abs(done.added[:, done.program.frame.linear]).max()),
         "lines_left_as_they_are": list(done.unmoved),
     }

@@ -46,6 +46,11 @@ class AxisTable:
         return not np.any(self.forward + self.reverse)
 
     @property
+    def moved(self) -> tuple[int, ...]:
+        """Directions of motion with a correction of their own; 0 for one between both."""
+        return (0,) if np.array_equal(self.forward, self.reverse) else (1, -1)
+
+    @property
     def reversal(self) -> "AxisTable":
         """What of it depends on the direction of motion alone."""
         half = 0.5 * (self.forward - self.reverse)
@@ -248,9 +253,9 @@ def _missed_by(table: AxisTable, needed: _Needed) -> float:
 def _needed_by(table: AxisTable, needed: _Needed, readings: Array) -> list[Array]:
     """What a table would have to correct after a positive and a negative motion, 2 x (n,)."""
     k = needed.errors.chain.axis_index(table.moves)
-    moves = (0, 0) if np.array_equal(table.forward, table.reverse) else (1, -1)
     own = needed.zero[k] if table.moves == table.over else 0.0
-    return [needed.along(table.over, readings, move)[:, k] + own for move in moves]
+    ways = [needed.along(table.over, readings, move)[:, k] + own for move in table.moved]
+    return [ways[0], ways[-1]]
 
 
 def left_out(tables: AxisTables, errors: MachineErrors, datum: Datum) -> tuple[str, ...]:
@@ -269,18 +274,22 @@ def unheld_along(
     """What tables of corrections leave per unit of every parameter, (N, 3, P), to first order."""
     chain = errors.chain
     zero = _unit_zero(errors, datum)  # (A, P)
-    nodes = {table.over: table.nodes for table in tables.tables}
-    needed = {over: _unit_needed(errors, datum, over, at) for over, at in nodes.items()}
+    needed = {
+        table.over: [_unit_needed(errors, datum, table, move) for move in table.moved]
+        for table in {table.over: table for table in tables.tables}.values()
+    }
     out = errors.columns(touches)
     moves = _motion(errors, touches)  # (N, 3, A)
     for table in tables.tables:
-        if table.is_left_out:
-            continue
         k = chain.axis_index(table.moves)
         at = on_table(touches.reading(table.over), table.nodes, chain.link(table.over))
-        added = interpolated(at, table.nodes, needed[table.over][:, k])
-        if table.over == table.moves:
-            added = added + zero[k]
+        ways = [way[:, k] for way in needed[table.over]]
+        added = np.zeros((len(touches), len(zero[k])))
+        if not table.is_left_out:
+            own = zero[k] if table.over == table.moves else 0.0
+            added += interpolated(at, table.nodes, 0.5 * (ways[0] + ways[-1])) + own
+        half = interpolated(at, table.nodes, 0.5 * (ways[0] - ways[-1]))
+        added += touches.last_move(table.over)[:, None] * half
         out += moves[:, :, k, None] * added[:, None, :]
     return out
 
@@ -307,10 +316,10 @@ def _unit_zero(errors: MachineErrors, datum: Datum) -> Array:
     return out
 
 
-def _unit_needed(errors: MachineErrors, datum: Datum, over: str, nodes: Array) -> Array:
-    """`_Needed.along` between both directions per unit of every parameter, (n, A, P)."""
+def _unit_needed(errors: MachineErrors, datum: Datum, table: AxisTable, move: int) -> Array:
+    """`_Needed.along` at the points of a table per unit of every parameter, (n, A, P)."""
     chain, there = errors.chain, datum.touches(errors)
-    touches = line(errors, datum, over, nodes)
+    touches = line(errors, datum, table.over, table.nodes, move)
     out = _unit_rotary(errors, touches) - _unit_rotary(errors, there)
     zero, linear = _unit_zero(errors, datum), chain.linear_columns
     moves, at_datum = _motion(errors, touches), _motion(errors, there)

@@ -13,6 +13,7 @@ from matstd.compensation.field import (
     MachineErrors,
     Result,
     deviation_after,
+    in_both_directions,
     relative_columns,
     result_of,
 )
@@ -195,7 +196,7 @@ def verify_tables(
     """
     tables, found = control_format.read(folder, errors.chain)
     found.check(head, folder)
-    touches = errors.touches(q, datum.length)
+    touches = in_both_directions(errors, q, datum.length)
     harmful: tuple[str, ...] = ()
     if isinstance(tables, NamedTables):
         unheld = unheld_by_name(tables, errors, datum, touches)

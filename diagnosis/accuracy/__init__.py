@@ -8,6 +8,7 @@ both ask here. Of a machine whose truth is known, a `Proof`: what a model predic
 from matstd.diagnosis.accuracy.left_out_blocks import blocks as blocks
 from matstd.diagnosis.accuracy.left_out_blocks import domains as domains
 from matstd.diagnosis.accuracy.promised import Promise as Promise
+from matstd.diagnosis.accuracy.promised import machine_root as machine_root
 from matstd.diagnosis.accuracy.promised import machine_variance as machine_variance
 from matstd.diagnosis.accuracy.promised import other_places as other_places
 from matstd.diagnosis.accuracy.promised import promise as promise

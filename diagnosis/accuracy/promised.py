@@ -77,7 +77,13 @@ def promise(fit: Fit, chosen: float | None = None) -> Promise:
 
 
 def machine_variance(touches: Touches, model: Model, root: Array, u: Array) -> Array:
-    """Variance of a prediction that no set-up takes up, (N,), mm^2.
+    """Variance of a prediction that no set-up takes up, (N,), mm^2; arguments of `machine_root`."""
+    left = machine_root(touches, model, root, u)
+    return np.asarray(np.einsum("nk,nk->n", left, left))
+
+
+def machine_root(touches: Touches, model: Model, root: Array, u: Array) -> Array:
+    """Root of the covariance of a prediction that no set-up takes up, (N, K), mm.
 
     Args:
         root: Of the covariance of the model's parameters, (P, K), base units.
@@ -87,8 +93,7 @@ def machine_variance(touches: Touches, model: Model, root: Array, u: Array) -> A
     sd = np.array([p.sd for e in placed for p in e.parameters])
     S = model.columns(touches) @ root / u[:, None]
     free = solve(columns(placed, touches) * sd / u[:, None], np.zeros(len(S))).Q
-    left = S - free @ (free.T @ S)
-    return np.asarray(np.einsum("np,np->n", left, left) * u**2)
+    return np.asarray((S - free @ (free.T @ S)) * u[:, None])
 
 
 def other_places(touches: Touches, rng: np.random.Generator) -> Touches:

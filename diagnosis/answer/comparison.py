@@ -5,11 +5,12 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
+from scipy.special import chdtrc
 
 from matstd.diagnosis.accuracy import (
     Promise,
     Repeatability,
-    machine_variance,
+    machine_root,
     promise,
     repeatability,
 )
@@ -17,6 +18,7 @@ from matstd.diagnosis.evidence import EffectSet, Progress, ResidualSpace, quiet
 from matstd.diagnosis.faults import DescriptionFault, description_faults
 from matstd.diagnosis.fit import Fit, Learnt, Prior, fit_run
 from matstd.diagnosis.geometry import LearntGeometry, learnt_geometry
+from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.remarks import Remark, remarks
 from matstd.diagnosis.residual import Region, Structure, find_structure, regions
 from matstd.twin.compute import one_blas_thread
@@ -27,6 +29,10 @@ from matstd.twin.model import Model
 from matstd.twin.numbers import rms
 from matstd.twin.record import Run, with_commanded, without_copies
 from matstd.twin.units import UM
+
+LARGER_THAN_STATED = 1.1
+"""Chi-square per degree of freedom from which a residual is larger than stated, beyond chance: a
+noise is seldom stated to 5 %."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,6 +56,8 @@ class Comparison(Tabular):
         is_prediction: Whether the machine was known before this run.
         u: Standard uncertainty of the difference of every touch, (N,), mm: of the touch as stated,
             and of the prediction where it was made without this run.
+        shared: What of it the touches share, root of a covariance, (N, K), mm; K = 0 without a
+            prediction.
         structure: What the residual varies with, the most certain first.
         where: Regions where the model fails.
         geometry: What the run says of the machine's geometry, and what of it changed since the
@@ -63,6 +71,7 @@ class Comparison(Tabular):
     fit: Fit
     is_prediction: bool
     u: Array
+    shared: Array
     structure: tuple[Structure, ...]
     where: tuple[Region, ...]
     geometry: LearntGeometry
@@ -145,7 +154,36 @@ class Comparison(Tabular):
     def chi2_ratio(self) -> float:
         """Weighted squared residual per degree of freedom."""
         z = self.normalised[self.counted]
-        return float(z @ z) / max(float(len(z)) - self.fit.solution.effective_parameters, 1e-9)
+        return float(z @ z) / self._dof
+
+    @property
+    def _dof(self) -> float:
+        return max(float(self.counted.sum()) - self.fit.solution.effective_parameters, 1e-9)
+
+    @cached_property
+    def chance(self) -> float:
+        """Probability of a squared residual at least as large by the stated uncertainties.
+
+        That of a prediction is shared by touches: ``z^T z`` is then a sum of squares with the
+        eigenvalues of the correlation of z as weights, here g times chi-square of as many degrees
+        of freedom as give its mean and variance (Satterthwaite).
+        """
+        shared = (self.shared / self.u[:, None])[self.counted]
+        each = np.einsum("nk,nk->n", shared, shared)
+        squared = np.sum((1.0 - each) ** 2 + 2.0 * (1.0 - each) * each)
+        squared += np.sum((shared.T @ shared) ** 2)
+        dof = self._dof * len(each) / float(squared)
+        return float(chdtrc(dof, self.chi2_ratio * dof))
+
+    @property
+    def is_larger(self) -> bool:
+        """Whether the residual is larger than its stated uncertainty, beyond chance."""
+        return self.chance < POLICY.false_alarm and self.chi2_ratio > LARGER_THAN_STATED
+
+    @property
+    def is_noise(self) -> bool:
+        """Whether nothing shows that the model fails: no pattern, no region, no larger residual."""
+        return not (self.structure or self.where or self.is_larger)
 
     @property
     def poses(self) -> tuple[GroupResidual, ...]:
@@ -201,17 +239,17 @@ def compare(
     run = with_commanded(without_copies(run))
     model = model or ordinary_model(run.touches.chain)
     if estimates is None:
-        fit = fit_run(run, model)
-        u = run.u
+        fit, shared = fit_run(run, model), np.zeros((len(run), 0))
     else:
         fit = _predicted(run, model, estimates)
-        u = np.sqrt(run.u**2 + machine_variance(run.touches, model, estimates.root, run.u))
+        shared = machine_root(run.touches, model, estimates.root, run.u)
     nothing = EffectSet(ResidualSpace.of(fit), np.zeros((int(fit.used.sum()) + len(fit.prior), 0)))
     found = tuple(find_structure(nothing, progress))
     return Comparison(
         fit=fit,
         is_prediction=estimates is not None,
-        u=u,
+        u=np.sqrt(run.u**2 + np.einsum("nk,nk->n", shared, shared)),
+        shared=shared,
         structure=found,
         where=regions(fit),
         geometry=learnt_geometry(fit, estimates),

@@ -7,6 +7,7 @@ import numpy as np
 
 from matstd.compensation.field import Result, Share, UncorrectedError
 from matstd.compensation.programs import Compensated
+from matstd.report.compensation.compensation_words import SMALLEST_OF_TOOL
 from matstd.report.numbers import with_uncertainty
 from matstd.report.style import (
     BLUE,
@@ -103,7 +104,10 @@ def draw_program(done: Compensated) -> Figure:
         right.axhline(done.tolerance / UM, color=FAINT, lw=0.8, label="tolerance of the division")
     if done.u.any():
         at = done.elapsed[done.u_at] / MINUTE
-        right.plot(at, done.u / UM, ":", color=INK, lw=1.2, label="uncertainty of the model (u)")
+        label = "uncertainty of the model (u)"
+        if done.u_tool > SMALLEST_OF_TOOL:
+            label += ", tools set relative to the probe"
+        right.plot(at, done.u / UM, ":", color=INK, lw=1.2, label=label)
     right.set(yscale="log", xlabel="time in min", ylabel="error of the tool point in µm")
     right.legend(fontsize=8, frameon=False)
     for ax in (left, right):

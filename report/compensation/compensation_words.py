@@ -22,7 +22,8 @@ def program_lines(name: str, done: Compensated) -> Iterator[str]:
     words = f"tool point at line ends {digits(before)} -> {digits(after)} µm rms"
     words += f" (worst {digits(worst)} µm)"
     if done.u.any() and rms_length(done.u[:, None]) > NM:
-        words += f"; the uncertainty of the model is {um(rms_length(done.u[:, None]), 2)} there"
+        u = rms_length(done.u[:, None])
+        words += f"; the uncertainty of the model is {um(u, 2)} there{_tool_words(u, done.u_tool)}"
     yield words
     if done.is_cut:
         row = int(np.nanargmax(done.between))
@@ -51,7 +52,7 @@ _TITLES = {
 }
 
 SMALLEST_OF_TOOL = 0.1 * UM
-"""Uncertainty of the probe's place in the spindle from which it is stated, rms over a workspace."""
+"""Uncertainty of the probe's place in the spindle from which it is stated, rms over the poses."""
 _GROWN = 1.01  # times an error of which more remains than there was, beyond rounding
 MAX_NAMED_ERRORS = 5  # errors that a control cannot represent, named on the console
 
@@ -66,17 +67,25 @@ def result_sentence(result: Result) -> str:
     before, after = rms_length(result.before) / UM, rms_length(result.after) / UM
     words = f"{digits(before)} -> {small(after)} µm rms over the workspace"
     worst = np.linalg.norm(result.after, axis=1).max() / UM
-    words += f" (worst of {len(result.q)} poses {small(worst)} µm)"
+    words += f" (worst of {poses_words(result)} {small(worst)} µm)"
     if result.u_rms > NM:
         numbers = (result.u_rms, result.expected_before, result.expected)
         u, was, will = (digits(v / UM, 2) for v in numbers)
         words += f"; the uncertainty of the model is {u} µm there, so expect {was} -> {will} µm"
-    if result.u_tool > SMALLEST_OF_TOOL:
-        others = digits(float(np.hypot(result.expected, result.u_tool)) / UM, 2)
-        words += (
-            f" with tools set relative to the probe of the measurement ({others} µm with others)"
-        )
-    return words
+    return words + _tool_words(result.expected, result.u_tool)
+
+
+def _tool_words(known: float, u_tool: float) -> str:
+    """For which tools a figure holds, mm, and what it is for others; empty where they are alike."""
+    if u_tool <= SMALLEST_OF_TOOL:
+        return ""
+    others = digits(float(np.hypot(known, u_tool)) / UM, 2)
+    return f" with tools set relative to the probe of the measurement ({others} µm with others)"
+
+
+def poses_words(result: Result) -> str:
+    """`256 poses in both directions`: where an axis reverses, each is judged after both motions."""
+    return f"{len(result.q)} poses" + (" in both directions" if result.has_directions else "")
 
 
 def small(value: float, significant: int = 3) -> str:

@@ -12,6 +12,7 @@ from matstd.report.compensation.compensation_words import (
     extent_of,
     grown_sentence,
     left_out_sentence,
+    poses_words,
     result_sentence,
     small,
 )
@@ -87,7 +88,7 @@ def write_compensation_page(
 
 
 def _key(first: Result, done: Sequence[VerifiedTables]) -> list[KeyFigure]:
-    before = f"error of the tool point before, rms of {len(first.q)} poses"
+    before = f"error of the tool point before, rms of {poses_words(first)}"
     u = first.u_rms / UM
     known = (
         KeyFigure(f"{digits(u, 2)} µm", "standard uncertainty of the model, rms")

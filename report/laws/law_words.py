@@ -255,10 +255,18 @@ def _size(learning: Learning, law: Law) -> str:
     if law.is_curve_alone:
         own = partial_residual(learning, law)[1]
         return f"{microns(float((own**2).mean() ** 0.5))} rms at the touches"
-    if len(found) == 1 and [f.shape.word for f in law.factors].count("saturation") == 1:
-        (a,) = found  # from -a to a: what lies between its ends is what a ramp is said with
-        whole = a._replace(value=2.0 * a.value, u=None if a.u is None else 2.0 * a.u)
-        return f"{amplitude_words(law, whole)} from end to end"
+    shapes = [f.shape.word for f in law.factors]
+    if "sign" in shapes or (len(found) == 1 and shapes.count("saturation") == 1):
+        # from -a to a: a ramp, and a reversal of the library, are said with what lies between
+        whole = [
+            a._replace(value=2.0 * a.value, u=None if a.u is None else 2.0 * a.u) for a in found
+        ]
+        return f"{_total_words(law, whole)} from end to end"
+    return _total_words(law, found)
+
+
+def _total_words(law: Law, found: Sequence[Estimate]) -> str:
+    """Amplitudes in words; several of one unit by the root of the sum of their squares."""
     if len(found) == 1 or any("slope" in a.name for a in found):  # no two of one unit to sum
         return ", ".join(amplitude_words(law, a) for a in found)
     total = math.sqrt(sum(a.value**2 for a in found))

@@ -59,6 +59,6 @@ def _files(title: str) -> str:
 
 def comparison_step(found: Comparison, title: str) -> str:
     """After a comparison; arguments as of `diagnosis_step`."""
-    if not found.structure:
+    if found.is_noise:
         return "Nothing; the model describes this run down to its noise."
     return f"`matstd diagnose {_files(title)} --auto` looks for the effect that the model lacks."

@@ -17,7 +17,7 @@ from matstd.report.live import scripted, style
 from matstd.report.numbers import sentence
 from matstd.report.run_view.run_data import Findings, run_data
 from matstd.report.verdict import part_lines
-from matstd.report.words import sizes, structure_words
+from matstd.report.words import region_sentence, sizes, structure_words
 from matstd.twin.files import write_whole
 from matstd.twin.frames import Array
 
@@ -98,7 +98,8 @@ def _curves(learning: Learning) -> dict[str, list[LawCurve]]:
 
 def comparison_view(found: Comparison, title: str, body: Array | None = None) -> LiveView:
     """Of a comparison: no effect on."""
-    patterns = "; ".join(structure_words(s) for s in found.structure[:PATTERNS_IN_VIEW])
+    words = [*map(structure_words, found.structure), *map(region_sentence, found.where)]
+    patterns = "; ".join(words[:PATTERNS_IN_VIEW])
     findings = Findings(
         title,
         set_up_alone=_set_up_alone(found.geometry),

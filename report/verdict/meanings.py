@@ -66,10 +66,15 @@ def diagnosis_meaning(result: Diagnosis) -> str:
 def comparison_meaning(found: Comparison) -> str:
     """Whether the model may be used for the machine as it is now."""
     what = "prediction" if found.is_prediction else "fit"
-    if not found.structure:
+    if found.is_noise:
         return (
             f"The {what} leaves {microns(found.rms)} rms without any pattern: the model holds for "
             "the machine as this run found it."
+        )
+    if not (found.structure or found.where):
+        return (
+            f"The {what} leaves {microns(found.rms)} rms without any pattern, more than the stated "
+            "uncertainty: the noise is larger than stated, or the machine differs from the model."
         )
     return (
         f"The {what} leaves {microns(found.rms)} rms with a pattern that is not due to chance. "

@@ -173,6 +173,8 @@ def promise_sentence(
     """
     limit = BROKEN_PROMISE * promised.elsewhere
     word = "worse than promised" if found.rms > limit else "as good as promised"
+    if found.where and found.rms <= limit:
+        word += " over all touches, but not where the model fails"
     why = ""
     # a noise that was stated too large is no uncertainty of the model
     stated = found.repeatability.stated

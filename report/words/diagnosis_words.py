@@ -14,6 +14,7 @@ from matstd.report.numbers import (
     digits,
     microns,
     noun,
+    p_value,
     plural,
     signed,
     span,
@@ -279,9 +280,16 @@ def _compared(found: Comparison) -> str:
         f"{microns(float(found.residual[worst]))}, "
         f"{digits(abs(float(found.normalised[worst])), 2)} times its uncertainty."
     )
-    if not found.structure:
-        return f"{text} The residual looks like noise."
-    return f"{text} The residual is not noise: {structure_clause(found.structure[0])}."
+    if found.structure:
+        return f"{text} The residual is not noise: {structure_clause(found.structure[0])}."
+    if found.where:
+        return f"{text} The residual is not noise: {region_sentence(found.where[0])}."
+    if found.is_larger:
+        return (
+            f"{text} The residual has no pattern, but is larger than the stated uncertainty "
+            f"(probability by chance {p_value(found.chance)})."
+        )
+    return f"{text} The residual looks like noise."
 
 
 def figures(fit: Fit) -> tuple[str, str, str]:

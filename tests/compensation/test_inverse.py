@@ -1,8 +1,10 @@
 """The inverse of the exact twin, against a second model of the machine that shares no code."""
 
+import json
+
 import numpy as np
 import pytest
-from bench import LENGTH, oracle_tip
+from bench import LENGTH, oracle_tip, part_program
 
 from matstd.compensation.field import (
     MachineErrors,
@@ -14,9 +16,11 @@ from matstd.compensation.field import (
     result_of,
     sample_workspace,
 )
+from matstd.compensation.programs import compensated, write_program_result
 from matstd.diagnosis.files import SavedModel
 from matstd.diagnosis.files.model_file import SourceEntry
 from matstd.diagnosis.fit import Prior
+from matstd.report.compensation import program_lines
 from matstd.twin.effects.setup_error import SetupError
 from matstd.twin.errors import BadValue, NotReachable
 from matstd.twin.library import parse_effect
@@ -97,6 +101,38 @@ def test_a_tool_set_against_the_probe_shares_its_place(bench_chain):
     errors = MachineErrors.of_model(saved(bench_chain, effects, [0.0, 0.0], covariance))
     np.testing.assert_allclose(np.linalg.norm(errors.root), own, rtol=1e-6)
     np.testing.assert_allclose(np.linalg.norm(errors.tool_root), shared, rtol=1e-6)
+
+
+CORNERS = ["X+50 Y+50", "X-50 Y+50", "X-50 Y-50", "X+50 Y-50"]
+
+
+def test_a_program_states_for_which_tools_its_uncertainty_holds(bench_chain, frame, head, tmp_path):
+    """EX0C less EX0t is known to 1 um, each alone to 20 um.
+
+    The line of C that is off by e puts the part that is turned by 180 degrees 2e beside the other;
+    the alignment halves that. A part that is milled without a turn does not feel it.
+    """
+    effects = tuple(parse_effect(f"location({s})", bench_chain) for s in ("EX0C", "EX0t"))
+    shared, own = 20 * UM, 1 * UM
+    covariance = [[shared**2 + own**2, shared**2], [shared**2, shared**2]]
+    errors = MachineErrors.of_model(saved(bench_chain, effects, [0.0, 0.0], covariance))
+    said, found = [], []
+    for second in (0, 180):
+        blocks = [f"L {at} Z+0 B+0 C+{c} F MAX" for c in (0, second) for at in CORNERS]
+        text = "\n".join(["BEGIN PGM A MM", *blocks, "END PGM A MM", ""])
+        found.append(compensated(part_program(text, frame, tmp_path), errors, head))
+        said.append(" ".join(program_lines("a", found[-1])))
+    np.testing.assert_allclose([one.u_tool for one in found], [0.0, shared], rtol=1e-3, atol=NM)
+    np.testing.assert_allclose(rms_length(found[1].u[:, None]), own, rtol=1e-3)
+    caveat = (
+        "1.0 µm there with tools set relative to the probe of the measurement (20 µm with others)"
+    )
+    assert caveat in said[1]
+    assert "with others" not in said[0]
+    write_program_result(tmp_path / "a.json", found[1])
+    assert json.loads((tmp_path / "a.json").read_text())["tool_u_um"] == pytest.approx(
+        20.0, rel=1e-3
+    )
 
 
 def test_uncertainty_of_the_result_is_that_of_drawn_machines(bench_chain, datum):

@@ -1,5 +1,6 @@
 """What is said beside a law: of the touches left out, of a second run, of the library."""
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -24,6 +25,7 @@ from matstd.report.laws.looks import looks_like
 from matstd.twin.errors import BadArgument
 from matstd.twin.files import read_machine
 from matstd.twin.library import ordinary_model, parse_effect
+from matstd.twin.machine import parse_symbol
 from matstd.twin.model import columns
 from matstd.twin.units import UM
 
@@ -167,3 +169,24 @@ def test_a_change_between_two_levels_is_said_from_end_to_end(case, shape) -> Non
     number, u = (float(x) for x in said.split(" of ")[1].split(" µm")[0].split(" ± "))
     assert abs(number - 12.0) < 4.0 * u < 4.0
     assert ("µm from end to end over time" in said) == (shape == "saturation")
+
+
+@pytest.mark.parametrize("beside", ["", ",harmonic C"])
+def test_a_reversal_is_said_from_end_to_end(case, beside) -> None:
+    """X stands 8 um further after a positive motion, or by up to 8 um over a turn of C."""
+    run = case(11, "hsm600u").run
+    chain, touches = run.touches.chain, run.touches
+    sides = np.where(np.arange(len(touches)) % 2, 1.0, -1.0)
+    approach = touches.approach.copy()
+    approach[:, chain.axis_index("X")] = sides
+    touches = replace(touches, approach=approach)
+    law = parse_effect(f"law(EXX,sign last-X{beside})", chain)
+    law = law.tuned(1.0) if beside else law
+    wave = np.cos(touches.reading("C") - 0.4) if beside else 1.0
+    moved = touches.signature.of(chain.twist_of(parse_symbol("EXX"))) * 4.0 * UM * sides * wave
+    start = Beginning.of_run(replace(run, touches=touches, deviation=run.deviation + moved))
+    fits = start.fitted([law]), start.fitted([law], True)
+    one = LearntLaw(law, (), 0.0, 0.0, 0.0, 0.0, ())
+    said = law_sentence(Learning(start, *fits, (one,), None, None, (), POLICY), one)
+    number, u = (float(x) for x in re.search(r"(-?[\d.]+) ± ([\d.]+) µm from end", said).groups())
+    assert abs(number - 8.0) < 4.0 * u < 4.0

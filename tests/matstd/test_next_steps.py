@@ -10,8 +10,12 @@ import pytest
 
 from matstd.api.machines import machine_file
 from matstd.cli import COMMANDS, FOLDERS, _parser, main
-from matstd.commands.measured.diagnose import _again, _unexplained
+from matstd.commands.measured.diagnose import _again, _next, _unexplained
+from matstd.compensation.field import State
+from matstd.diagnosis.answer import Verdict
 from matstd.next_steps import _AFTER, BY_RESULT, next_line
+from matstd.twin.files import read_machine
+from matstd.twin.library import parse_effect
 
 CALLS = """
 design project.toml -o OUT
@@ -226,3 +230,37 @@ def test_a_diagnosis_that_is_repeated_takes_more() -> None:
     args = parsed(["diagnose", "run.csv", "--add", "drift", "-o", "OUT"])
     line = _again(args, "--add", "slip", runs=("new.csv",))
     assert line == "matstd diagnose run.csv new.csv --add drift --add slip -o OUT-2"
+
+
+class OwnColumns(SimpleNamespace):
+    """An effect of a user's file, which looks up what it follows by itself."""
+
+    def terms(self, touches):
+        return touches.value["coolant_bar"] * touches.spindle_rpm
+
+
+def test_compensation_gets_all_that_the_model_follows() -> None:
+    """Members of a class that are averaged follow a sensor each."""
+    chain = read_machine(machine_file("hsm600u"))
+    state = {"temperature": {"scale": 24.26, "ambient": 20.61, "spindle": 31.0}}
+    state |= {"spindle_rpm": 6000.0, "value": {"coolant_bar": 40.0, "air_bar": 6.0}}
+    touches = State(time=6600.0, **state).touches(chain, chain.travels.mean(axis=1)[None], 160.0)
+    named = parse_effect("thermal-expansion(X,scale)", chain)
+    member = parse_effect("thermal-expansion(X,ambient)", chain)
+
+    def words(*effects):
+        learnt = SimpleNamespace(model=SimpleNamespace(effects=effects))
+        steps = [SimpleNamespace(effect=None), SimpleNamespace(effect=named)]
+        found = {"run": SimpleNamespace(touches=touches), "learnt": learnt, "steps": steps}
+        found |= {"verdict": Verdict.MISSING, "withdrawn": (), "plans": ()}
+        found["parts"] = SimpleNamespace(geometry=SimpleNamespace(beyond=()))
+        args = parsed(["diagnose", "run.csv", "--auto", "--effects", "a.py", "-o", "O"])
+        line = _next(args, SimpleNamespace(**found))[0]
+        begin = "matstd compensate O/model.toml --effects a.py --tool-length 160 --tables tables"
+        assert line.startswith(f"{begin} --after 110 ")
+        return line.removeprefix(f"{begin} --after 110 ").removesuffix(" --within")
+
+    sensors, others = "--temperature scale=24.3 ambient=20.6", "--value coolant_bar=40 --rpm 6000"
+    assert words(named, member) == sensors
+    assert words(named, OwnColumns(), member) == f"{sensors} {others}"
+    assert words(parse_effect("thermal-lag(EZZ,spindle_rpm)", chain)) == "--rpm 6000"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from matstd.commands.measured.results import made_in_folder, say_files
 from matstd.console import console, say, say_each
@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from matstd.api.diagnosing import Diagnosis
     from matstd.diagnosis.answer import Step
     from matstd.twin.compute import Progress
+    from matstd.twin.model import Effect
+    from matstd.twin.record import Touches
 
 CELL_WIDTH = 40
 """Width in characters of a cell of words, so that the table of figures fits beside them."""
@@ -95,7 +97,8 @@ def _next(args: argparse.Namespace, found: Diagnosis) -> tuple[str, str]:
         return _again(args, runs=("again.csv",)), why
     tool = np.median(found.run.touches.length)
     tables = Path(args.output).parent / "tables"
-    words = called("compensate", model, "--tool-length", f"{tool:g}", "--tables", tables)
+    own = kept(args, "effects")
+    words = called("compensate", model, *own, "--tool-length", f"{tool:g}", "--tables", tables)
     words = " ".join([words, *_last_state(found), "--within", *_probed(found)])
     return words, "judged where the touches were, at the end of the run"
 
@@ -107,24 +110,39 @@ def _again(args: argparse.Namespace, *more: object, runs: Sequence[str] = ()) ->
 
 
 def _last_state(found: Diagnosis) -> list[str]:
-    """What drives the effects that were found, as it was at the last touch."""
+    """What the effects of the model follow, as it was at the last touch."""
+    from dataclasses import replace
+
     import numpy as np
 
-    from matstd.twin.model import traits
-    from matstd.twin.thermal import OWN, SPINDLE
-
-    touches, effects = found.run.touches, [s.effect for s in found.steps if s.effect is not None]
-    known = [traits(effect) for effect in effects]
-    drives = dict.fromkeys(d for t in known for d in (t.driver, *t.parameter_drives))
+    touches, effects = found.run.touches, found.learnt.model.effects
     last = int(np.argmax(touches.time))
-    out = ["--after", f"{touches.time[last] / MINUTE:.0f}"] if effects else []
-    if warm := [d for d in drives if d in touches.temperature]:
-        out += ["--temperature", *(f"{d}={touches.temperature[d][last]:.1f}" for d in warm)]
-    if SPINDLE in drives and touches.spindle_rpm is not None:
-        out += ["--rpm", f"{touches.spindle_rpm[last]:.0f}"]
-    if own := [d.removeprefix(OWN) for d in drives if d.startswith(OWN)]:
-        out += ["--value", *(f"{d}={touches.value[d][last]:.6g}" for d in own)]
+    at = touches[np.array([last])]
+    is_found = any(step.effect is not None for step in found.steps)
+    out = ["--after", f"{touches.time[last] / MINUTE:.0f}"] if is_found else []
+    columns = {"temperature": (at.temperature, ".1f"), "value": (at.value, ".6g")}
+    for option, (known, digits) in columns.items():
+        asked = []
+        for name in known:
+            others: dict[str, Any] = {option: {n: v for n, v in known.items() if n != name}}
+            if _is_short(effects, replace(at, **others)):
+                asked.append(f"{name}={known[name][0]:{digits}}")
+        out += [f"--{option}", *asked] if asked else []
+    if at.spindle_rpm is not None and _is_short(effects, replace(at, spindle_rpm=None)):
+        out += ["--rpm", f"{at.spindle_rpm[0]:.0f}"]
     return out
+
+
+def _is_short(effects: Sequence[Effect], at: Touches) -> bool:
+    """Whether a touch lacks something that an effect follows."""
+    from matstd.twin.errors import UnknownEffect
+
+    try:
+        for effect in effects:
+            effect.terms(at)
+    except (UnknownEffect, KeyError, TypeError):  # a user's effect may look it up by itself
+        return True
+    return False
 
 
 def _probed(found: Diagnosis) -> list[str]:
