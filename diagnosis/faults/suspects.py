@@ -37,7 +37,7 @@ class Fault(Enum):
     OTHER_SIDE = "axis on the other side of the chain"
     RADIANS = "radians in a column of degrees"
     INCHES = "inches in linear columns"
-    FROM_INCHES = "mm converted as if they were inches"
+    FROM_INCHES = "converted as if from inches"
     NORMALS_INWARD = "normals into the standard"
     TOOL_LENGTH = "tool length"
     BALL_RADIUS = "ball radius"
