@@ -141,8 +141,8 @@ def test_a_table_beside_its_line_or_out_of_reach_is_asked_about(tmp_path, origin
 @pytest.mark.parametrize(
     ("point", "away"),
     [
-        ("[-620.0, 0.0, -420.0]", "220 mm outside the travel along X"),
-        ("[501.0, 0.0, -420.0]", "101 mm outside the travel along X"),
+        ("[-620.0, 0.0, -420.0]", "220 mm outside the travels along X"),
+        ("[501.0, 0.0, -420.0]", "101 mm outside the travels along X"),
         ("[499.0, 0.0, -420.0]", ""),
         ("[0.0, 450.0, -420.0]", ""),  # along its own line
     ],
@@ -165,7 +165,7 @@ def test_an_inclined_line_of_a_table_beside_the_travels_is_asked_about(tmp_path)
     path = tmp_path / "machine.toml"
     x, y, z = literal_eval(point)
     path.write_text(text.replace(point, f"[{x - 520.0}, {y}, {z}]", 1), encoding="utf-8")
-    with pytest.raises(BadFile, match=r"axis\.B\.point: .*220 mm outside the travel along X"):
+    with pytest.raises(BadFile, match=r"axis\.B\.point: .*220 mm outside the travels along X"):
         read_machine(path)
 
 

@@ -332,13 +332,13 @@ def _table_axes(chain: Chain) -> Iterator[Link]:
 
 
 def _line_beside_travels(chain: Chain) -> Iterator[BadValue]:
-    """A line of a table far beside a travel across it and the tool: no tool bridges that."""
-    low, high = _travels(chain)
+    """A line of a table far beside it and a travel, across line and tool: no tool bridges that."""
+    low, high = _box(chain)
     for link in _table_axes(chain):
         outside = np.maximum(low - link.point, link.point - high)[:2]
         outside[np.abs(link.direction[:2]) > ALONG_ITS_LETTER] = 0.0
         if (away := outside.max()) > FARTHEST_BESIDE and link.name not in chain.assumed_points:
-            found = f"{_list(link.point)}, {away:.0f} mm outside the travel along "
+            found = f"{_list(link.point)}, {away:.0f} mm outside the travels along "
             expected = "a line that the spindle reaches, in mm"
             yield BadValue(f"axis.{link.name}.point", found + "XY"[outside.argmax()], expected)
 
