@@ -45,18 +45,21 @@ class ProbeTable(Table):
     """diameter of the stem. Default: that of a common stylus for the ball"""
     body_diameter_mm: float = Field(default=50.0, gt=0.0)
     """diameter of the probe body, up to the gauge line"""
-    nose_diameter_mm: float = Field(default=90.0, gt=0.0)
-    """diameter of the spindle nose above the gauge line"""
+    nose_diameter_mm: float | None = Field(default=None, gt=0.0, examples=[90.0])
+    """diameter of spindle nose or ram up to 150 mm above the gauge line, as measured. A table that
+    swivels comes beside it. Default: that of the model, or 90 mm; the set-up sheet says so"""
 
     def probe(self) -> Probe:
         """In base units; requires the complete table of `checked_probe`."""
         assert self.radius_mm is not None
         assert self.length_mm is not None
+        nose, likely = self.nose_diameter_mm, probe_models()[self.model or "plain"]
         return Probe(
             radius=self.radius_mm,
             length=self.length_mm,
             stack=tuple((end, 0.5 * diameter) for end, diameter in self.stack_mm or ()),
-            nose_radius=0.5 * self.nose_diameter_mm,
+            nose_radius=0.5 * (nose or likely.nose_diameter_mm),
+            nose_is_stated=nose is not None,
         )
 
 
@@ -279,8 +282,6 @@ def checked_probe(probe: AnyProbe, path: Path, key: str = "probe") -> AnyProbe:
         stack = model.stack_mm
         stated["radius_mm"] = probe.radius_mm or 0.5 * model.ball_diameter_mm
         stated["length_mm"] = probe.length_mm or stack[-1][0]
-        if "nose_diameter_mm" not in given:
-            stated["nose_diameter_mm"] = model.nose_diameter_mm
     radius, length = stated["radius_mm"], stated["length_mm"]
     for name in ("radius_mm", "length_mm"):
         if stated[name] is None:

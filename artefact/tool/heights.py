@@ -1,6 +1,6 @@
 """Heights of Z at which the tool clears everything that stands on the table."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import pairwise, product
 from typing import NamedTuple
 
@@ -29,6 +29,8 @@ class Probe:
     # 50 mm
     stack: tuple[tuple[float, float], ...] = ()
     nose_radius: float = 45.0  # of the spindle nose above the gauge line
+    # whether the project states it; None of programs, which do not say
+    nose_is_stated: bool | None = field(default=None, compare=False)
 
     def __post_init__(self) -> None:
         if not 0.0 < self.radius < self.length:

@@ -24,6 +24,7 @@ FREE_LENGTH = 20.0
 
 FREE_ANGLE = 0.1  # the same of a zero position, rad
 AS_COMPUTED = 1e-3  # deviations that follow from the readings do so within this, mm
+POINT, NORMAL = ("px", "py", "pz"), ("nx", "ny", "nz")  # columns of a run, without their units
 MIN_TOUCH_INTERVAL = 1.0  # least time between two touches of a probe, s
 
 
@@ -31,11 +32,12 @@ class Fault(Enum):
     """Mistakes in a description."""
 
     AXIS_REVERSED = "axis the other way"
-    AXES_SWAPPED = "columns of two axes exchanged"
+    AXES_SWAPPED = "two columns exchanged"
     ROTARY_ORDER = "rotary axes in the other order"
     OTHER_SIDE = "axis on the other side of the chain"
     RADIANS = "radians in a column of degrees"
     INCHES = "inches in linear columns"
+    FROM_INCHES = "converted as if from inches"
     NORMALS_INWARD = "normals into the standard"
     TOOL_LENGTH = "tool length"
     BALL_RADIUS = "ball radius"
@@ -80,10 +82,20 @@ def suspects(run: Run, is_absurd: bool) -> Iterator[Suspect]:
         q = t.q.copy()
         q[:, [t.chain.axis_index(axis) for axis in axes]] /= DEG
         yield _with_touches(run, Fault.RADIANS, axes, replace(t, q=q))
+    inch = dict(LENGTHS)["inches"]
     q = t.q.copy()
-    q[:, list(t.chain.linear_columns)] *= dict(LENGTHS)["inches"]
-    yield _with_touches(run, Fault.INCHES, t.chain.linear_axes, replace(t, q=q))
+    q[:, list(t.chain.linear_columns)] *= inch
+    linear, points = t.chain.linear_axes, replace(t, point=inch * t.point)
+    yield _with_touches(run, Fault.INCHES, linear, replace(t, q=q))
+    yield _with_touches(run, Fault.INCHES, POINT, points)
+    yield _with_touches(run, Fault.INCHES, (*linear, *POINT), replace(points, q=q))
+    yield _with_touches(run, Fault.FROM_INCHES, POINT, replace(t, point=t.point / inch))
     yield _with_touches(run, Fault.NORMALS_INWARD, (), replace(t, normal=-t.normal))
+    for i, j in combinations(range(3), 2):
+        normal = t.normal.copy()
+        normal[:, [i, j]] = t.normal[:, [j, i]]
+        pair = NORMAL[i], NORMAL[j]
+        yield _with_touches(run, Fault.AXES_SWAPPED, pair, replace(t, normal=normal))
 
 
 def has_minutes_for_seconds(run: Run) -> bool:

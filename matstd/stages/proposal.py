@@ -12,7 +12,14 @@ from pathlib import Path
 
 import numpy as np
 
-from matstd.artefact.brief import Brief, base_of, design_machine, project_text, read_project
+from matstd.artefact.brief import (
+    Brief,
+    base_of,
+    design_machine,
+    probe_models,
+    project_text,
+    read_project,
+)
 from matstd.artefact.feasibility import Feasibility, check_seat, feasibility, stands
 from matstd.artefact.reach import TABLE, Solid
 from matstd.artefact.seat import base_corners, over_edge
@@ -254,10 +261,11 @@ def _tables(
     outline: dict[str, object] = {"diameter_mm": sides[0]}
     if len(table) > 1:
         outline = {"sides_mm": sides}
+    nose = probe_models()["plain"].nose_diameter_mm
     faces = next(count for side, count in FACES.items() if base >= side)
     return {
         "": {"format": "project/1", "machine": machine.resolve().as_posix(), "seed": 1},
-        "probe": {"radius_mm": 3.0, "length_mm": length},
+        "probe": {"radius_mm": 3.0, "length_mm": length, "nose_diameter_mm": nose},
         "workspace": dict(workspace(chain, base, height, length, turn)),
         "standard": {"name": "FFS-1", "patches": faces} | _down(turn),
         "blank": {"base_mm": [base, base], "height_mm": height},

@@ -307,11 +307,11 @@ class Writer:
 
     def _touches(self, visit: Visit, rows: IntArray) -> list[str]:
         """All touches of a visit, each from the clearance height and back to it."""
-        k, options, feeds = self.language, self.plan.options, self.feeds
+        k, options, feeds, top = self.language, self.plan.options, self.feeds, self.plan.top
         frame = self.frame.tilted(visit.rotary) if self.tilting else self.frame
         if self.raised is not None:
             return self._dry(visit, rows, frame)
-        up, out = k.line({"Z": frame.coordinate("Z", visit.height)}, None), []
+        up, out = k.line({"Z": frame.height(visit.height, top)}, None), []
         for count, row in enumerate(rows):
             start = frame.coordinates(self.plan.start[row], LINEAR)
             feature = str(self.plan.feature[row])
@@ -336,17 +336,17 @@ class Writer:
     def _dry(self, visit: Visit, rows: IntArray, frame: ProgramFrame) -> list[str]:
         """Moves to the same places at a greater height, without touches."""
         assert self.raised is not None
-        k, z = self.language, self.plan.chain.axis_index("Z")
-        high = min(visit.height + self.raised, self.plan.top)
-        up, out = k.line({"Z": frame.coordinate("Z", high)}, None), []
+        k, z, top = self.language, self.plan.chain.axis_index("Z"), self.plan.top
+        high = frame.height(visit.height + self.raised, top)
+        up, out = k.line({"Z": high}, None), []
         for count, row in enumerate(rows):
             start = frame.coordinates(self.plan.start[row], "XY")
-            low = min(float(self.plan.start[row, z]) + self.raised, high)
+            low = min(frame.coordinate("Z", self.plan.start[row, z] + self.raised), high)
             out += [
                 k.comment(f"PLACE OF TOUCH {row + 1} ON {self.plan.feature[row]}"),
                 k.line(start, None),
                 *([up] if count == 0 else []),
-                k.line({"Z": frame.coordinate("Z", low)}, self.feeds.approach),
+                k.line({"Z": low}, self.feeds.approach),
                 up,
             ]
         return out

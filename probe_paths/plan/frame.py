@@ -24,6 +24,8 @@ from matstd.twin.units import DEG
 LINEAR = "XYZ"
 
 _PARALLEL = 1e-9  # largest angle between an axis of a tilted plane and one of the machine, rad
+_WORD = 1e-4  # last digit of the words of linear axes, mm
+_SAME = 1e-3  # part of that digit that floating-point numbers may lack
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,6 +127,14 @@ class ProgramFrame:
     def coordinate(self, letter: str, reading: float) -> float:
         """Programmed word of a reading: mm, or degrees for a rotary axis."""
         return reading - self._offset(letter) if letter in LINEAR else reading / DEG
+
+    def height(self, z: float, top: float) -> float:
+        """Programmed word of a reading of Z that leads no higher than the reading `top`, mm.
+
+        In a plane the word of `top` has more digits than a program states: it is rounded down.
+        """
+        highest = np.floor(self.coordinate("Z", top) / _WORD + _SAME) * _WORD
+        return min(self.coordinate("Z", z), float(highest))
 
     def reading(self, letter: str, coordinate: float) -> float:
         """Reading of a programmed word, mm or rad."""

@@ -35,12 +35,15 @@ def copy_lines(
     """Corrections of the files: mistakes, and lines of axes far from their stated position.
 
     Errors of a usual size belong into the model, which describes them better than a machine file.
-    Where several numbers explain the run equally, none of them alone can be recommended.
+    Where several numbers explain the run equally, none of them alone can be recommended. Columns or
+    axes that are wrong altogether leave nothing of the geometry that was estimated with them.
 
     Args:
         geometry: Estimated from it; None where it could not be fitted.
         faults: Mistakes in the description, each with its alternatives.
     """
+    if any(not fault.numbers and fault.fault is not Fault.MINUTES for fault in faults):
+        geometry = None
     corrections = {} if geometry is None else {c.key: c for c in geometry.corrections}
     rows = () if geometry is None else geometry.rows
     groups = [[w for one in (f, *f.alike) for w in _undone(touches, one)] for f in faults]

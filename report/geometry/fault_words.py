@@ -34,7 +34,8 @@ _MISTAKES = {
     Fault.ROTARY_ORDER: "{axes} are in the wrong order in the chain ({chain} fits)",
     Fault.OTHER_SIDE: "{axes} is on the wrong side of the chain ({chain} fits)",
     Fault.RADIANS: "readings of {axes} are radians, not degrees",
-    Fault.INCHES: "readings of {axes} are inches, not mm",
+    Fault.INCHES: "{axes} are inches, not mm",
+    Fault.FROM_INCHES: "{axes} are 25.4 times too large, mm converted as if they were inches",
     Fault.NORMALS_INWARD: "the normals point into the standard",
     Fault.MINUTES: "touches are less than a second apart: time_s looks like minutes",
 }

@@ -40,6 +40,12 @@ _REMEDY_GCODE = {
     Label.ZERO_2: "offset of the rotary axis in the preset: zero",
 }
 """Where LinuxCNC keeps what iTNC has in columns of tables."""
+_NOSE = {
+    True: ", as stated in the project",
+    False: ", assumed; measure yours and state `nose_diameter_mm`",
+    None: "",
+}
+"""By what the diameter of the nose is known; of programs alone it is not."""
 _PRESETS = (Label.PRESET_X, Label.PRESET_Y, Label.PRESET_Z)
 _CAMPAIGN = (
     "Stations in their order; all logs are evaluated together. Between set-ups the standard is "
@@ -222,7 +228,8 @@ def _probe(station: Station) -> list[Section]:
     if dialect.folder:
         rows.append(["folder of programs, masks and logs", f"`{dialect.folder}`"])
     cylinders = [[f"{end:.1f}", f"{2.0 * radius:.1f}"] for end, radius in probe.stack]
-    cylinders.append(["nose of the spindle", f"{2.0 * probe.nose_radius:.1f}"])
+    nose = f"nose of the spindle{_NOSE[probe.nose_is_stated]}"
+    cylinders.append([nose, f"{2.0 * probe.nose_radius:.1f}"])
     caption = "Cylinders of the probe from the centre of the ball upwards; measure yours"
     return [
         Section("Probe and control", table=Table(("what", "value"), rows)),

@@ -14,7 +14,8 @@ from matstd.cli import main
 from matstd.diagnosis.faults import Fault, description_faults, faults_of_refused
 from matstd.diagnosis.faults.suspects import recomputed
 from matstd.diagnosis.fit import fit_run
-from matstd.report.geometry import fault_sentences
+from matstd.diagnosis.geometry import learnt_geometry
+from matstd.report.geometry import copy_lines, fault_sentences
 from matstd.twin.effects import LocationError
 from matstd.twin.errors import BadFile
 from matstd.twin.library import ordinary_model, parse_effect
@@ -80,6 +81,43 @@ def test_linear_columns_in_inches_are_named(texts, is_stated: bool) -> None:
     assert "are inches, not mm" in fault_sentences([fault])[0]
 
 
+def with_columns(run: str, names: list[str], change) -> str:
+    """A run whose columns hold what `change` makes of their numbers, (N, K) to (N, K)."""
+    head = [line for line in run.splitlines() if line.startswith("#")]
+    header, *rows = [line.split(",") for line in run.splitlines()[len(head) :]]
+    at = [header.index(name) for name in names]
+    made = change(np.array([[float(row[i]) for i in at] for row in rows]))
+    for row, values in zip(rows, made, strict=True):
+        for i, value in zip(at, values, strict=True):
+            row[i] = f"{value:.9f}"
+    return "\n".join([*head, *map(",".join, [header, *rows])]) + "\n"
+
+
+@pytest.mark.parametrize("pair", [("nx", "ny"), ("nx", "nz"), ("ny", "nz")])
+def test_exchanged_columns_of_the_normal_are_named(texts, pair) -> None:
+    run, machine = texts
+    (fault,) = faults_in(with_columns(run, list(pair), lambda v: v[:, ::-1]), machine)
+    assert (fault.fault, fault.axes, fault.alike) == (Fault.AXES_SWAPPED, pair, ())
+    assert f"the columns of {pair[0]} and {pair[1]} are exchanged" in fault_sentences([fault])[0]
+    assert fault.test_rms[0] > 100.0 * fault.test_rms[1]
+
+
+@pytest.mark.parametrize(
+    ("columns", "factor", "words"),
+    [
+        (("px", "py", "pz"), 1.0 / 25.4, "px, py and pz are inches, not mm"),
+        (("px", "py", "pz"), 25.4, "px, py and pz are 25.4 times too large"),
+        (("X", "Y", "Z", "px", "py", "pz"), 1.0 / 25.4, "X, Y, Z, px, py and pz are inches"),
+    ],
+)
+def test_points_in_inches_are_named(texts, columns, factor: float, words: str) -> None:
+    run, machine = texts
+    named = [f"{column}_mm" for column in columns]
+    (fault,) = faults_in(with_columns(run, named, lambda v: factor * v), machine)
+    assert (set(fault.axes), fault.alike) == (set(columns), ())
+    assert words in fault_sentences([fault])[0]
+
+
 def test_rotary_axes_in_the_other_order_are_named_with_the_chain(texts) -> None:
     run, machine = texts
     (fault,) = faults_in(run, machine.replace("[w C' B' X'", "[w B' C' X'"))
@@ -139,6 +177,15 @@ def test_a_pivot_comes_back_with_its_sign(pivot) -> None:
     (number,) = fault.numbers
     assert number.name == "EX0C"
     assert number.change == pytest.approx(-2.0, abs=4.0 * number.u)
+
+
+def test_of_wrong_columns_no_number_of_the_machine_is_copied(pivot) -> None:
+    """The geometry was estimated with them."""
+    fit, (fault,) = pivot
+    geometry, touches = learnt_geometry(fit), fit.run.touches
+    assert any("axis.C" in line for line in copy_lines(touches, geometry, ()))
+    columns = replace(fault, fault=Fault.AXES_SWAPPED, axes=("ny", "nz"), numbers=())
+    assert copy_lines(touches, geometry, [columns]) == []
 
 
 def test_the_command_line_names_the_mistake_in_its_refusal(texts, tmp_path, capsys) -> None:

@@ -152,6 +152,7 @@ def test_a_proposed_project_passes_the_first_checks_of_a_design(kind, tmp_path, 
     code, path = proposed(kind, tmp_path)
     assert code == 0
     brief = read_project(path)
+    assert brief.probe.nose_is_stated
     brief = replace(brief, options=replace(brief.options, sites=60))  # a tenth of the usual places
     check_seat(brief)
     feasibility(brief).check()

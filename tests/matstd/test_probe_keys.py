@@ -6,6 +6,7 @@ import pytest
 
 from matstd.artefact.brief import read_project
 from matstd.artefact.tool import Probe
+from matstd.commands.machine.new import template
 from matstd.twin.errors import BadFile
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "hsm600u.toml"
@@ -37,6 +38,25 @@ def test_the_keys_reach_planner_and_placement(tmp_path):
     expected = Probe(radius=3.0, length=160.0, stack=((40.0, 1.5), (160.0, 31.0)), nose_radius=50.0)
     assert found.probe == expected
     assert found.reach.shape.cylinders == ((40.0, 1.5), (160.0, 31.0), (310.0, 50.0))
+
+
+@pytest.mark.parametrize(
+    ("keys", "diameter", "is_stated"),
+    [
+        ("", 90.0, False),
+        ("nose_diameter_mm = 90.0", 90.0, True),
+        ('model = "om-63x76"', 100.0, False),
+        ('model = "om-63x76"\nnose_diameter_mm = 120.0', 120.0, True),
+    ],
+)
+def test_a_nose_that_is_not_stated_is_an_assumed_one(tmp_path, keys, diameter, is_stated):
+    found = project(tmp_path, keys).probe
+    assert (2.0 * found.nose_radius, found.nose_is_stated) == (diameter, is_stated)
+
+
+def test_new_projects_state_the_nose():
+    assert "\nnose_diameter_mm = 90.0  " in template("project")
+    assert "nose or ram above the gauge line: measure yours" in template("project")
 
 
 @pytest.mark.parametrize(

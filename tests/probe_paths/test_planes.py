@@ -16,13 +16,14 @@ from matstd.probe_paths.campaign import VirtualMachine, evaluate
 from matstd.probe_paths.control import Move, ProbeStep
 from matstd.probe_paths.emit import make_dry_run, make_programs
 from matstd.probe_paths.language import Dialect, read_dialect
-from matstd.probe_paths.plan import ProgramFrame
+from matstd.probe_paths.plan import ProgramFrame, plan_touches
 from matstd.probe_paths.stations import dialects_of
 from matstd.twin.effects import component
 from matstd.twin.errors import BadFile, DesignError
 from matstd.twin.files import read_machine
 from matstd.twin.machine import table_to_tool
 from matstd.twin.model import contribution
+from matstd.twin.units import DEG
 
 ROOT = Path(__file__).parents[2]
 
@@ -101,6 +102,25 @@ def test_a_dry_run_has_planes_too(plan):
     assert "PLANE SPATIAL" in made.programs[0].text
     moves = [step for step in as_read(made, plan.chain).steps if isinstance(step, Move)]
     assert len(moves) > 100
+
+
+def test_the_retract_is_the_highest_place_in_every_plane(plan, small, chain, golden):
+    """At B +15 and -35 its word ends in ..0661 and ..1635: the nearest one leads above it."""
+    wanted, z = golden.requests(small), chain.axis_index("Z")
+    b = wanted.rotary[:, 1]
+    stands = np.select([np.isclose(b, 20.0 * DEG), np.isclose(b, -30.0 * DEG)], [15.0, -35.0], 0.0)
+    wanted = replace(wanted, rotary=np.column_stack([wanted.rotary[:, 0], stands * DEG]))
+    options = replace(plan.options, tolerated=10)
+    inclined = plan_touches(small, chain, plan.probe, plan.setup, wanted, options)
+    highest = tuple(replace(visit, height=plan.top) for visit in inclined.visits)
+    at_top = replace(inclined, visits=highest)
+    for made in (make_dry_run(inclined, 500.0, TILTED), make_programs(at_top, TILTED)):
+        moves = [step for step in as_read(made, chain).steps if isinstance(step, Move)]
+        reached = np.array([step.q[z] for step in moves])
+        high = reached[reached > plan.top - 1.0]
+        assert len(high) > 40
+        assert high.max() < plan.top + 1e-6
+        assert high.min() > plan.top - 1.01e-4
 
 
 @pytest.mark.parametrize(

@@ -71,6 +71,21 @@ def test_touches_left_out_for_one_reason_stand_in_one_line(golden, tmp_path):
     assert "1 touch on FF2, B-90.0: no room above" in page
 
 
+@pytest.mark.parametrize(
+    ("is_stated", "words"),
+    [
+        (True, "nose of the spindle, as stated in the project"),
+        (False, "nose of the spindle, assumed; measure yours and state `nose_diameter_mm`"),
+        (None, "nose of the spindle"),
+    ],
+)
+def test_the_nose_is_stated_or_assumed(golden, is_stated, words):
+    plan = golden.plan()
+    plan = replace(plan, probe=replace(plan.probe, nose_is_stated=is_stated))
+    _, cylinders = setup_page._probe(Station(plan, Dialect(), golden.programs()))
+    assert cylinders.table.rows[-1] == [words, "90.0"]
+
+
 def test_every_alarm_of_the_programs_is_explained(sheet):
     text, programs = sheet
     alarms = set(re.findall(r"LBL (\d+) ;(?:ALARM|NOTRIGGER)", programs.programs[0].text))

@@ -1,5 +1,6 @@
 """The border: what is read comes out in base units; every fault is one clear line."""
 
+import re
 from functools import partial
 from pathlib import Path
 
@@ -190,6 +191,24 @@ def test_errors_in_mm_are_refused_where_the_largest_says_so(machine: Path, tmp_p
     path.write_text(small.replace("10.0", "0.01").replace("1.0", "0.001"))
     with pytest.raises(BadFile, match=r"EXX\.amplitude: found 0\.012, .*is it in mm\?"):
         read_errors(path, read_machine(machine))
+
+
+def test_an_amplitude_that_looks_like_mm_may_be_confirmed(machine: Path, tmp_path: Path) -> None:
+    path, chain = tmp_path / "errors.toml", read_machine(machine)
+    keys = '[EYY]\nshape = "linear"\namplitude = 0.06\n'
+    path.write_text(f'format = "errors/1"\n{keys}')
+    words = (
+        r'EYY\.amplitude: found 0\.06, .*mm\? \(if it is meant: (confirmed = \["EYY.amplitude"\])'
+    )
+    with pytest.raises(BadFile, match=words) as refusal:
+        read_errors(path, chain)
+    line = re.findall(words, str(refusal.value))[0]
+    path.write_text(f'format = "errors/1"\n{line}\n{keys}')
+    ((_, theta),) = read_errors(path, chain)
+    assert theta == pytest.approx([0.06e-3])
+    path.write_text(f'format = "errors/1"\n{line}\n{keys.replace("0.06", "6.0")}')
+    with pytest.raises(BadFile, match=r"confirmed: found 'EYY\.amplitude', .*: none is"):
+        read_errors(path, chain)
 
 
 def test_poses(machine: Path, tmp_path: Path) -> None:

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from matstd.api.machines import machine_file, machine_names
+from matstd.commands.machine.new import template
 from matstd.twin.errors import BadFile
 from matstd.twin.files import read_machine
 
@@ -135,6 +136,37 @@ def test_a_table_beside_its_line_or_out_of_reach_is_asked_about(tmp_path, origin
     assert line == 'confirmed = ["workpiece.origin"]'
     chain = read_machine(changed(tmp_path, asked, ("[axis.X]", f"{line}\n\n[axis.X]")))
     assert chain.table_origin.tolist() == origin
+
+
+@pytest.mark.parametrize(
+    ("point", "away"),
+    [
+        ("[-620.0, 0.0, -420.0]", "220 mm outside the travels along X"),
+        ("[501.0, 0.0, -420.0]", "101 mm outside the travels along X"),
+        ("[499.0, 0.0, -420.0]", ""),
+        ("[0.0, 450.0, -420.0]", ""),  # along its own line
+    ],
+)
+def test_a_line_of_a_table_beside_the_travels_is_asked_about(tmp_path, point, away):
+    """X travels from -400 to 400 mm; B turns about a line along Y."""
+    path = changed(tmp_path, (PIVOT, point))
+    if away:
+        with pytest.raises(BadFile, match=rf"axis\.B\.point: .*{away}") as refusal:
+            read_machine(path)
+        line = stated(str(refusal.value))
+        assert line == 'confirmed = ["axis.B.point"]'
+        path = changed(tmp_path, (PIVOT, point), ("[axis.X]", f"{line}\n\n[axis.X]"))
+    assert read_machine(path).link("B").point.tolist() == literal_eval(point)
+
+
+def test_an_inclined_line_of_a_table_beside_the_travels_is_asked_about(tmp_path):
+    text = template("machine", "swivel-45")
+    (point,) = re.findall(r"\[axis\.B\]\n(?:.+\n)*?point = (\[.*?\])", text)
+    path = tmp_path / "machine.toml"
+    x, y, z = literal_eval(point)
+    path.write_text(text.replace(point, f"[{x - 520.0}, {y}, {z}]", 1), encoding="utf-8")
+    with pytest.raises(BadFile, match=r"axis\.B\.point: .*220 mm outside the travels along X"):
+        read_machine(path)
 
 
 def test_a_cradle_may_carry_its_table_at_any_height(tmp_path):

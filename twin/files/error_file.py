@@ -9,6 +9,7 @@ from pydantic import Field
 from matstd.twin.effects import ComponentError, LocationError
 from matstd.twin.errors import BadFile, UnknownSymbol
 from matstd.twin.files.keys import Table, checked
+from matstd.twin.files.slips import refuse_unit_slips
 from matstd.twin.files.toml import read_toml
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain, Family, Symbol
@@ -18,7 +19,7 @@ from matstd.twin.units import DEG, UM, URAD, in_another_unit
 LARGEST_ERROR = 1e6
 """An amplitude beyond this (µm or µrad: a metre, a radian) is a slip of units, not an error."""
 USUAL_LARGEST = 30.0
-"""Usual size of the largest error of lengths, µm: 0.0075 to 0.12 are taken for mm, and refused."""
+"""Usual size of the largest error of lengths, µm: 0.0075 to 0.12 are asked about: in mm?"""
 
 
 class ErrorTable(Table):
@@ -38,22 +39,31 @@ class ErrorTable(Table):
     """phase of a sinusoidal error"""
 
 
+class ErrorFile(Table):
+    """Keys of the file beside its errors."""
+
+    format: str = Field(examples=["errors/1"])
+    """kind and version of the file, `"errors/1"`"""
+    confirmed: list[str] = Field(default_factory=list, examples=[["EXX.amplitude"]])
+    """the largest amplitude where it looks like one in mm and is meant; it is not asked about"""
+
+
 def read_errors(path: str | Path, chain: Chain) -> list[tuple[Effect, Array]]:
     """Errors of a machine as effects with their amplitudes (base units).
 
     Raises:
         BadFile: Unknown name or key, a shape missing or too many, a number that is none, or
-            amplitudes in mm.
+            amplitudes in mm unless confirmed.
     """
     import numpy as np
 
     twice = "[[{name}]] in every place: the shapes of one error add up"
     data = read_toml(path, "errors/1", twice)
+    beside = {key: data.pop(key) for key in ErrorFile.model_fields if key in data}
+    head = checked(ErrorFile, beside, path)
     out: list[tuple[Effect, Array]] = []
     largest = (0.0, "")
     for name, tables in data.items():
-        if name == "format":
-            continue
         try:
             symbol = chain.symbol(name)
         except UnknownSymbol as error:
@@ -66,10 +76,11 @@ def read_errors(path: str | Path, chain: Chain) -> list[tuple[Effect, Array]]:
             out.append((_effect(symbol, entry, path, key), np.array([entry.amplitude * unit])))
             if not symbol.is_angular:
                 largest = max(largest, (abs(entry.amplitude), f"{key}.amplitude"))
-    word, (size, key) = "µm", largest
+    questions, word, (size, key) = list[BadFile](), "µm", largest
     if (slip := in_another_unit([size], word, USUAL_LARGEST)) and slip[0] == "mm":
         expected = f"{word}, the largest usually about {USUAL_LARGEST:g}; is it in {slip[0]}?"
-        raise BadFile(path, key, f"{size:g}", expected)
+        questions.append(BadFile(path, key, f"{size:g}", expected))
+    refuse_unit_slips(head, path, questions, head.confirmed)
     return out
 
 

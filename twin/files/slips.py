@@ -41,6 +41,7 @@ machines that come with this program the smallest travel is 0.4 of the next."""
 FARTHEST_TABLE, TRAVELS_AWAY = 400.0, 3.0
 """Distance of the table's centre from the travels, mm, up to which a probe with a standard bridges
 it; and in travels, from which on these are in centimetres."""
+FARTHEST_BESIDE = 100.0  # of a table's line beside the travels across the tool, mm
 OFF_CENTRE = 5.0
 """Distance of the centre of a table from the line about which it turns, mm; centres are known to
 tenths."""
@@ -160,11 +161,8 @@ def machine_questions(chain: Chain, is_placed: bool = True) -> Iterator[BadValue
         is_placed: Whether the place of the table is stated.
     """
     if len(chain.linear_axes) == 3:
-        rules = (
-            _small_turn,
-            _small_travel,
-            *((_far_table, _mirrored_pivot, _table_off_centre) if is_placed else ()),
-        )
+        placed = (_far_table, _mirrored_pivot, _table_off_centre) if is_placed else ()
+        rules = (_small_turn, _small_travel, *placed, _line_beside_travels)
         # what a rule finds explains what the later ones would
         yield from next(filter(None, (list(rule(chain)) for rule in rules)), [])
 
@@ -232,8 +230,8 @@ def _table(chain: Chain) -> Iterator[BadValue]:
     low, high = _travels(chain)
     below = [(o[2] - low[2]) / max(high[2] - low[2], SHORTEST_TRAVEL) for o in (origin, mm)]
     is_above = below[0] > MOST_BELOW > below[1]
-    lines = [link for link in chain.links if link.kind == "rotary" and link.carries_workpiece]
-    away = [[np.linalg.norm(_across(o - k.point, k)) for o in (origin, mm)] for k in lines]
+    lines, both = _table_axes(chain), (origin, mm)
+    away = [[np.linalg.norm(_across(o - k.point, k)) for o in both] for k in lines]
     is_far = any(stated > NEARER * meant and stated > LEAST_AWAY for stated, meant in away)
     if is_above or is_far:
         expected = f"mm, the centre of the table's face; is it in metres, {_list(mm)}?"
@@ -313,8 +311,7 @@ def _far_table(chain: Chain) -> Iterator[BadValue]:
 
 def _table_off_centre(chain: Chain) -> Iterator[BadValue]:
     """A table whose centre, seen along the tool, lies beside the line about which it turns."""
-    lines = (k for k in chain.links if k.kind == "rotary" and k.carries_workpiece and k.programmed)
-    if (link := next(lines, None)) is None:
+    if (link := next(_table_axes(chain), None)) is None:
         return
     away = chain.table_origin - link.point
     across = np.cross(link.direction, [0.0, 0.0, 1.0])
@@ -328,6 +325,22 @@ def _table_off_centre(chain: Chain) -> Iterator[BadValue]:
         found = f"{_list(chain.table_origin)}, {off:.4g} mm off the line of {link.name}"
         expected = f"the centre of the table's face, on that line, through {_list(link.point)}"
         yield BadValue("workpiece.origin", found, expected)
+
+
+def _table_axes(chain: Chain) -> Iterator[Link]:
+    return (k for k in chain.links if k.kind == "rotary" and k.carries_workpiece and k.programmed)
+
+
+def _line_beside_travels(chain: Chain) -> Iterator[BadValue]:
+    """A line of a table far beside it and a travel, across line and tool: no tool bridges that."""
+    low, high = _box(chain)
+    for link in _table_axes(chain):
+        outside = np.maximum(low - link.point, link.point - high)[:2]
+        outside[np.abs(link.direction[:2]) > ALONG_ITS_LETTER] = 0.0
+        if (away := outside.max()) > FARTHEST_BESIDE and link.name not in chain.assumed_points:
+            found = f"{_list(link.point)}, {away:.0f} mm outside the travels along "
+            expected = "a line that the spindle reaches, in mm"
+            yield BadValue(f"axis.{link.name}.point", found + "XY"[outside.argmax()], expected)
 
 
 def _mirrored_pivot(chain: Chain) -> Iterator[BadValue]:
