@@ -59,8 +59,10 @@ from matstd.diagnosis.choice import (
 )
 from matstd.diagnosis.evidence import Progress, RawColumns, quiet
 from matstd.diagnosis.faults import description_faults
-from matstd.diagnosis.fit import Prior, prior_for
+from matstd.diagnosis.fit import Prior, evidence_of, prior_for
 from matstd.diagnosis.geometry import learnt_geometry
+from matstd.diagnosis.policy import POLICY
+from matstd.diagnosis.regression import GrossErrors
 from matstd.diagnosis.remarks import What, noticed, remarks
 from matstd.diagnosis.residual import regions
 from matstd.diagnosis.search import MOST_SETS, DiagnosisTask, SearchState, refined_named
@@ -142,7 +144,8 @@ def _searched(
     A missing effect passes for noise, beside which errors of the machine a sixteenth of what is
     expected may be likeliest. Once the effect is there, they are drawn to zero, and what is left of
     them looks like further effects. So the search is made again with the prior that suits beside
-    the clearest effect, or the clearest two and so on, where that is wider.
+    the clearest effect, or the clearest two and so on, where that is wider. Its result stands
+    unless the run is clearly likelier with the one before.
     """
     found, final = search_with_memory(task, single, progress)
     for _ in range(MAX_SUITED):
@@ -154,9 +157,20 @@ def _searched(
         if wider is None:
             break
         task = replace(task, prior=task.prior.at_least(wider))
-        found, final = search_with_memory(task, single, progress)
+        again = search_with_memory(task, single, progress)
+        gross = final.base.gross
+        before, after = (_evidence(t, s, gross) for t, s in ((found, final), again))
+        if before > after + POLICY.log_evidence_gain:
+            break
+        found, final = again
     # errors of the lines of joints bend like effects that are missing
     return found.suited(final.effects) if task.model.chain.joints else found, final
+
+
+def _evidence(task: DiagnosisTask, state: SearchState, gross: GrossErrors) -> float:
+    """Log evidence of the run with the effects that a search found, at given gross errors."""
+    fit = task.fit_found(state.effects, gross)
+    return evidence_of(fit.X[fit.used], fit.y[fit.used])
 
 
 def _offered(

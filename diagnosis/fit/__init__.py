@@ -27,6 +27,7 @@ from matstd.diagnosis.fit.inner import spacing as spacing
 from matstd.diagnosis.fit.learnt_fit import Learnt as Learnt
 from matstd.diagnosis.fit.learnt_fit import averaged as averaged
 from matstd.diagnosis.fit.prior import Prior as Prior
+from matstd.diagnosis.fit.suited_prior import evidence_of as evidence_of
 from matstd.diagnosis.fit.unit_mistakes import MistakenUnit as MistakenUnit
 from matstd.diagnosis.fit.unit_mistakes import UnitMistake as UnitMistake
 from matstd.diagnosis.fit.unit_mistakes import unit_mistake as unit_mistake

@@ -80,9 +80,7 @@ def positioning(name: str, cycles: int = 6, seed: int = 1) -> Run:
     return positioning_run(table, one_axis_machine("X", target), NOISE)
 
 
-@pytest.mark.parametrize(
-    "name", [*list(AXES)[:-1], pytest.param("worn place and pitch", marks=pytest.mark.slow)]
-)
+@pytest.mark.parametrize("name", AXES)
 def test_a_table_is_named_where_no_law_does_the_same(name, unchanged) -> None:
     """With a law, and then with fewer numbers, the law has the name; and either predicts."""
     run = positioning(name)
