@@ -176,9 +176,13 @@ def planted_one(k: int, seed: int) -> str:
     start = time.perf_counter()
     found, refusal = named(*one.edit(run, machine))
     wanted = (one.fault, tuple(sorted(one.axes)))
-    # a table out of reach is refused before any touch is read, with the line that is wrong
-    is_asked = one.fault is Fault.AXIS_REVERSED and f"axis.{one.axes[0]}.direction:" in refusal
-    is_named = wanted in found or is_asked
+    # some are refused before any touch is read, with the question that names them: a table out of
+    # reach, a head whose line lies below the spindle
+    asked = {
+        Fault.AXIS_REVERSED: f"axis.{one.axes[0]}.direction:" if one.axes else "",
+        Fault.OTHER_SIDE: f"does {one.axes[0]} turn the table" if one.axes else "",
+    }
+    is_named = wanted in found or bool(asked.get(one.fault)) and asked[one.fault] in refusal
     outcome = "right" if is_named else "misnamed" if found else "missed"
     stated = "; ".join(f"{f.value} {'/'.join(axes)}".strip() for f, axes in found)
     seconds = time.perf_counter() - start

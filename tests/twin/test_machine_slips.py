@@ -221,6 +221,8 @@ def test_a_pivot_of_the_other_sign_is_asked_about(tmp_path, name, point):
     with pytest.raises(BadFile, match=r"\.point: .*is it \[0, 0, (-?\d+)\]\?") as refusal:
         read_machine(path)
     assert f"is it [0, 0, {z:g}]?" in str(refusal.value)
+    # a line below the gauge point may be that of a table, and lack its prime
+    assert ("turn the table" in str(refusal.value)) is (z > 0)
     line = stated(str(refusal.value))
     path.write_text(f"{line}\n" + path.read_text(encoding="utf-8"), encoding="utf-8")
     read_machine(path)

@@ -358,12 +358,13 @@ def _mirrored_pivot(chain: Chain) -> Iterator[BadValue]:
         if link.carries_workpiece:
             away = np.linalg.norm(ends - _across(chain.table_origin, link), axis=1)
             is_mirrored = away[0] > max(NEARER * away[1], FARTHEST_TABLE)
-            words = f"near the table at {_list(chain.table_origin)}"
+            words, other = f"near the table at {_list(chain.table_origin)}", ""
         else:
             is_mirrored = i > last and ends[0, 2] < -LEAST_AWAY and not ends[:, :2].any()
             words = "above the gauge point of the spindle"
+            other = f" Or does {link.name} turn the table, {link.name}'?"
         if is_mirrored:
-            expected = f"a point {words}, every axis at zero; is it {_list(meant)}?"
+            expected = f"a point {words}, every axis at zero; is it {_list(meant)}?{other}"
             yield BadValue(f"axis.{link.name}.point", _list(link.point), expected)
 
 
