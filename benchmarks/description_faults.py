@@ -182,7 +182,7 @@ def planted_one(k: int, seed: int) -> str:
         Fault.AXIS_REVERSED: f"axis.{one.axes[0]}.direction:" if one.axes else "",
         Fault.OTHER_SIDE: f"does {one.axes[0]} turn the table" if one.axes else "",
     }
-    is_named = wanted in found or bool(asked.get(one.fault)) and asked[one.fault] in refusal
+    is_named = wanted in found or (bool(asked.get(one.fault)) and asked[one.fault] in refusal)
     outcome = "right" if is_named else "misnamed" if found else "missed"
     stated = "; ".join(f"{f.value} {'/'.join(axes)}".strip() for f, axes in found)
     seconds = time.perf_counter() - start
