@@ -86,8 +86,9 @@ def whole_features(rest: Array, fit: Solution, allowed: Mask, features: Features
 
     With ``A = 1 - Q Q^T`` and a column c that is one at the touches of a feature, the offset that
     the others leave it is ``c^T r / c^T A c``, with the standard uncertainty
-    ``s (c^T A c)^-1/2``; s is the scatter of the others. The most certain is taken into the fit,
-    and the next one is looked for.
+    ``s (c^T A c)^-1/2``; s is the scatter of the others, for the degrees of freedom that are left:
+    a model of as many parameters as touches leaves nearly none of it. The most certain is taken
+    into the fit, and the next one is looked for.
 
     Args:
         rest: Observed minus predicted, whitened, (N,).
@@ -97,13 +98,13 @@ def whole_features(rest: Array, fit: Solution, allowed: Mask, features: Features
     rows, half = np.zeros(len(rest), dtype=bool), np.zeros(len(rest))
     label, Q, r = features.number[allowed], fit.Q, rest[allowed]
     names, count = np.unique(label[label >= 0], return_counts=True)
-    left = set(names[count >= MIN_TOUCHES].tolist())
+    left, freed = set(names[count >= MIN_TOUCHES].tolist()), np.sqrt(len(r) / max(fit.dof, 1.0))
     while left:
         each = {f: _freed(label == f, Q, r) for f in left}
         best = max(left, key=lambda f: abs(each[f][1]))
         (c, moved, length), own = each[best], label == best
         after = r - moved * c
-        size, scale = abs(moved) / length, robust_scale(after[~own])
+        size, scale = abs(moved) / length, freed * robust_scale(after[~own])
         is_certain = min(size, abs(moved)) > LEAST_OFFSET * scale > 0.0
         is_most = float(np.mean(np.abs(after[own]) < 0.5 * size)) >= LEAST_SHARE
         if not (is_certain and is_most) or robust_scale(after[own]) > MOST_SCATTER * size:
