@@ -15,7 +15,7 @@ from matstd.diagnosis.regression.linear import Solution
 from matstd.twin.frames import Array, IntArray, Mask
 from matstd.twin.record import Touches
 
-MIN_TOUCHES = 10
+MIN_OF_FEATURE = 10
 """Touches of a feature that is judged as a whole: a law of the machine displaces five by nearly one
 amount. Of a smaller feature each touch stands out by itself, or none does."""
 
@@ -98,7 +98,7 @@ def whole_features(rest: Array, fit: Solution, allowed: Mask, features: Features
     rows, half = np.zeros(len(rest), dtype=bool), np.zeros(len(rest))
     label, Q, r = features.number[allowed], fit.Q, rest[allowed]
     names, count = np.unique(label[label >= 0], return_counts=True)
-    left, freed = set(names[count >= MIN_TOUCHES].tolist()), np.sqrt(len(r) / max(fit.dof, 1.0))
+    left, freed = set(names[count >= MIN_OF_FEATURE].tolist()), np.sqrt(len(r) / max(fit.dof, 1.0))
     while left:
         each = {f: _freed(label == f, Q, r) for f in left}
         best = max(left, key=lambda f: abs(each[f][1]))
